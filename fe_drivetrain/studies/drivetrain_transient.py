@@ -21,6 +21,7 @@ from fe_drivetrain.dynamics.time.machine_channels import Kind
 from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP, Event, event_of
 from fe_drivetrain.procedure.drivetrain_operation import operation
 from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.part_damage import PartUse
 from fe_drivetrain.studies.transient_digest import (
     FileDigest,
     OperationOptions,
@@ -39,7 +40,15 @@ from fe_drivetrain.studies.transient_ladder import (
     cheapest_level,
     level_error,
 )
-from fe_drivetrain.studies.transient_result import LEVELS, TransientResult
+from fe_drivetrain.studies.transient_parts import (
+    DAMAGE,
+    DamageOptions,
+    PartQuestion,
+    history_damage_rows,
+    part_question,
+    state_parts,
+)
+from fe_drivetrain.studies.transient_result import LEVELS, TransientResult, word_of
 from fe_drivetrain.studies.transient_runs import (
     Extreme,
     LevelRun,
@@ -85,6 +94,7 @@ def transient(
     backlash: float = 0.0,
     options: OperationOptions | None = None,
     resume: bool = False,
+    damage: DamageOptions | None = DAMAGE,
     report: Progress = silent,
 ) -> TransientResult:
     """Compute what a drivetrain does in an event, or in operation, by the cheapest level that is
@@ -119,6 +129,8 @@ def transient(
         How histories are read and counted.
     resume : bool
         Take digests of histories that an earlier run kept.
+    damage : DamageOptions or None
+        How damage of gears and bearings is counted; None leaves it out.
     report : Progress
         Called with the name of each step as it begins.
 
@@ -134,9 +146,10 @@ def transient(
         raise InputError(
             f"{argument('tolerance')} is {tolerance:g} but must be between 0 and 1: change it"
         )
+    machine = machine_of(drivetrain)
     asked = _Asked(
         drivetrain,
-        machine_of(drivetrain),
+        machine,
         event,
         {**_of_file(drivetrain, event), **(values or {})},
         rated_of(drivetrain, backlash),
@@ -145,6 +158,7 @@ def transient(
         tolerance,
         duration,
         step,
+        part_question(drivetrain, machine, damage),
     )
     steps = Steps(report)
     if event == OPERATION:
@@ -170,6 +184,7 @@ class _Asked:
     tolerance: float
     duration: float | None
     step: float | None
+    parts: PartQuestion
 
     def levels(self, possible: Sequence[Level]) -> list[Level]:
         """Levels to run, of those at which the event can happen."""
@@ -260,7 +275,8 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     made: dict[Level, Prepared] = {}
 
     def at(level: Level) -> Callable[[float | None], LevelRun]:
-        of = made[level] = Prepared(asked.machine, level, asked.rated, event.teeth)
+        counted = asked.parts.counted
+        of = made[level] = Prepared(asked.machine, level, asked.rated, event.teeth, parts=counted)
         planned = event.plan(of.of, duration, asked.rated.slip)
         return lambda step: of.event(planned, event.step(of.of) if step is None else step)
 
@@ -272,7 +288,11 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     if torques and asked.event == "stop":
         with steps.step("instants of the brake"):
             instants = by_instant(made[run.level], event, torques[-1], run.step)
-    return _result(asked, found, steps, runs, number, run.extremes, run.samples, {}, {}, instants)
+    with steps.step("gears and bearings"):
+        use = asked.parts.of_event(run, word_of(run.level), asked.rated.torque)
+    return _result(
+        asked, found, steps, runs, number, run.extremes, run.samples, {}, {}, instants, use
+    )
 
 
 def _duration(asked: _Asked, event: Event) -> float:
@@ -336,7 +356,8 @@ def _operated(
     window = min(options.until or WINDOW, WINDOW, first.seconds)
 
     def at(level: Level) -> Callable[[float | None], LevelRun]:
-        of = Prepared(asked.machine, level, asked.rated, hub_loads=first.has_all)
+        counted = asked.parts.counted
+        of = Prepared(asked.machine, level, asked.rated, hub_loads=first.has_all, parts=counted)
         moving = operation(of.of, first, asked.rated.slip)
         return lambda step: of.window(moving, options.step if step is None else step, window)
 
@@ -345,9 +366,19 @@ def _operated(
     level = runs[number].level
     names = [short_name(path, files) for path in files]
     with steps.step("files"):
-        of = Prepared(asked.machine, level, asked.rated, hub_loads=first.has_all)
+        counted = asked.parts.counted
+        of = Prepared(asked.machine, level, asked.rated, hub_loads=first.has_all, parts=counted)
         begun, samples = driven(of, first, options)
-        rest = digests(files[1:], asked.machine, level, asked.rated, options, resume, steps.report)
+        rest = digests(
+            files[1:],
+            asked.machine,
+            level,
+            asked.rated,
+            options,
+            resume,
+            steps.report,
+            counted,
+        )
         of_files = dict(zip(names, [begun, *rest], strict=True))
     extremes = over_files(of_files, runs[number])
     more = {
@@ -358,7 +389,13 @@ def _operated(
     found.data("equivalent_loads", equivalent_rows(of_files, extremes, options.slopes))
     found.data("duration_spectra", spectrum_rows(of_files, extremes))
     found.data("files", digest_rows(of_files, extremes))
-    return _result(asked, found, steps, runs, number, extremes, samples, of_files, more)
+    with steps.step("gears and bearings"):
+        use = asked.parts.of_operation(
+            of_files, files, runs[number], word_of(level), asked.rated.torque
+        )
+    if use is not None and (use.gears or use.bearings):
+        found.data("file_damage", history_damage_rows(use, names))
+    return _result(asked, found, steps, runs, number, extremes, samples, of_files, more, None, use)
 
 
 def _findings(asked: _Asked) -> Findings:
@@ -383,7 +420,8 @@ def _result(
     samples: Samples,
     files: Mapping[str, FileDigest],
     more: Mapping[str, Any],
-    instants: ByInstant | None = None,
+    instants: ByInstant | None,
+    use: PartUse | None,
 ) -> TransientResult:
     """State what was found, and freeze it."""
     run = runs[number]
@@ -399,8 +437,12 @@ def _result(
     judge_run(found, asked.event, run, imbalance, asked.rated)
     state_assumptions(found, asked.event, asked.values, asked.drivetrain)
     state_figures(found, extremes, run)
-    state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity, instants)
-    word = next(word for word, one in LEVELS.items() if one is run.level)
+    state_answer(
+        found, asked.event, extremes, run, runs, number, files, asked.quantity, instants, use
+    )
+    word = word_of(run.level)
+    if use is not None:
+        state_parts(found, use, asked.parts, word)
     return TransientResult(
         event=asked.event,
         level=word,
@@ -414,5 +456,6 @@ def _result(
         samples=samples,
         files=files,
         by_instant=instants,
+        parts=use,
         **found.frozen(steps.times, **{**asked.plain(), **more}),
     )

@@ -167,10 +167,25 @@ class OneBearing:
 
     def rules(self, asked: LifeRules) -> LifeRules:
         """Choices that change the life of this bearing, from those that are asked for."""
-        found = asked if self.turning is None else replace(asked, turning=self.turning)
-        if self.oil is None or asked.lubricant is None:
-            return found
-        return replace(found, lubricant=self.oil.lubricant)
+        return own_rules(asked, self.turning, self.oil)
+
+
+def own_rules(asked: LifeRules, turning: Turning | None, oil: Oil | None) -> LifeRules:
+    """Choices that change the life of a bearing, from those that are asked for.
+
+    Parameters
+    ----------
+    asked : LifeRules
+        Asked for, of all bearings.
+    turning : {"inner", "outer"} or None
+        The ring that turns against the load, where the drivetrain says so.
+    oil : Oil or None
+        The oil of a gearbox's bearing.
+    """
+    found = asked if turning is None else replace(asked, turning=turning)
+    if oil is None or asked.lubricant is None:
+        return found
+    return replace(found, lubricant=oil.lubricant)
 
 
 def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:

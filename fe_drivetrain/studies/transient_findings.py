@@ -17,9 +17,11 @@ from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value, percent_text, value_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.machine_description import ON_THE_GROUND
+from fe_drivetrain.studies.part_damage import PartUse
 from fe_drivetrain.studies.transient_digest import FileDigest
 from fe_drivetrain.studies.transient_instants import ByInstant
 from fe_drivetrain.studies.transient_ladder import COUNTED, QUANTITIES, level_error
+from fe_drivetrain.studies.transient_parts import part_figures
 from fe_drivetrain.studies.transient_runs import Extreme, LevelRun, Rated
 from fe_drivetrain.studies.transient_tables import alternating_rows, in_shown_unit
 
@@ -229,6 +231,7 @@ def state_answer(
     files: Mapping[str, FileDigest],
     quantity: Kind,
     instants: ByInstant | None = None,
+    use: PartUse | None = None,
 ) -> None:
     """State what the event does, with the level that it needs.
 
@@ -252,6 +255,8 @@ def state_answer(
         For which the level has to be enough.
     instants : ByInstant, optional
         Peak of a stop by the instant of its brake.
+    use : PartUse, optional
+        What it does to gears and bearings.
     """
     of = _Answered(found, extremes, run)
     verdict, figures = _VERDICTS[event](of, files)
@@ -266,7 +271,9 @@ def state_answer(
     if len(runs) > 1:
         error = level_error(runs[number], runs[-1], quantity).error
         _say_level(found, runs, number, quantity, error)
-    found.answer(QUESTIONS[event], verdict, figures[:6], cautions=_cautions(event, run, files))
+    damage = part_figures(found, use)
+    shown = [*figures[: 6 - len(damage)], *damage]
+    found.answer(QUESTIONS[event], verdict, shown, cautions=_cautions(event, run, files))
 
 
 def _say_level(
