@@ -102,6 +102,7 @@ def check_turning(
             f"brake is on shaft {drivetrain.brake.shaft!r}, which is none: use one of "
             f"{', '.join(names)}"
         )
+    _check_limit_names(drivetrain, names)
     if not gears.stages and drivetrain.generator is None:
         return
     try:
@@ -109,6 +110,32 @@ def check_turning(
     except NotGivenError:
         return
     check_table(table)
+    _check_limits(drivetrain, table)
+
+
+def _check_limit_names(drivetrain: Drivetrain, names: Sequence[str]) -> None:
+    """Refuse limits of shafts that there are not."""
+    for name in {} if drivetrain.limits is None else drivetrain.limits.peak_torque:
+        if name not in names:
+            raise InputError(
+                f"limits: peak_torque is of shaft {name!r}, which is none: use one of "
+                f"{', '.join(names)}"
+            )
+
+
+def _check_limits(drivetrain: Drivetrain, table: MachineTable) -> None:
+    """Refuse limits that the rated torque is beyond."""
+    rated = None if drivetrain.operation is None else drivetrain.operation.rated_torque
+    if drivetrain.limits is None or rated is None:
+        return
+    for shaft, speed in zip(table.shafts, table.speeds, strict=True):
+        limit, torque = drivetrain.peak_torque(shaft.name), rated / abs(speed)
+        if limit is not None and limit < torque:
+            raise InputError(
+                f"limits: peak_torque of shaft {shaft.name!r} is {limit:g} N m but must be at "
+                f"least its torque at rated power, {torque:.6g} N m: raise it, or correct "
+                "operation"
+            )
 
 
 def _lacks(drivetrain: Drivetrain, key: str, example: str) -> str:

@@ -22,6 +22,7 @@ from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP, Event, event
 from fe_drivetrain.procedure.drivetrain_operation import operation
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.part_damage import PartUse
+from fe_drivetrain.studies.torque_limits import note_limits, torque_limits
 from fe_drivetrain.studies.transient_digest import (
     FileDigest,
     OperationOptions,
@@ -29,6 +30,7 @@ from fe_drivetrain.studies.transient_digest import (
     driven,
 )
 from fe_drivetrain.studies.transient_findings import (
+    Beside,
     judge_run,
     state_answer,
     state_assumptions,
@@ -428,7 +430,7 @@ def _result(
     kinds = [kind for kind in QUANTITIES if any(e.kind == kind for e in extremes.values())]
     errors = tuple(tuple(level_error(one, runs[-1], kind) for kind in kinds) for one in runs)
     imbalance = max([run.imbalance, *(one.imbalance for one in files.values())])
-    found.data("extremes", extreme_rows(extremes))
+    found.data("extremes", extreme_rows(extremes, torque_limits(asked.drivetrain, extremes)))
     found.data("levels", level_rows(runs, errors, number))
     if asked.event == "offset":
         found.data("alternating", alternating_rows(run))
@@ -437,9 +439,10 @@ def _result(
     judge_run(found, asked.event, run, imbalance, asked.rated)
     state_assumptions(found, asked.event, asked.values, asked.drivetrain)
     state_figures(found, extremes, run)
-    state_answer(
-        found, asked.event, extremes, run, runs, number, files, asked.quantity, instants, use
-    )
+    limits = torque_limits(asked.drivetrain, extremes)
+    note_limits(found, limits, extremes)
+    beside = Beside(instants, use, limits)
+    state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity, beside)
     word = word_of(run.level)
     if use is not None:
         state_parts(found, use, asked.parts, word)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import dataclass, field, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from fe_drivetrain.report.number_text import certain_value, percent_text, value_
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.machine_description import ON_THE_GROUND
 from fe_drivetrain.studies.part_damage import PartUse
+from fe_drivetrain.studies.torque_limits import BY, hardest_limit, limit_figure
 from fe_drivetrain.studies.transient_digest import FileDigest
 from fe_drivetrain.studies.transient_instants import ByInstant
 from fe_drivetrain.studies.transient_ladder import COUNTED, QUANTITIES, level_error
@@ -171,6 +172,25 @@ def state_figures(found: Findings, extremes: Mapping[str, Extreme], run: LevelRu
         )
 
 
+@dataclass(frozen=True)
+class Beside:
+    """What stands beside extremes in an answer.
+
+    Attributes
+    ----------
+    instants : ByInstant or None
+        Peak of a stop by the instant of its brake.
+    use : PartUse or None
+        What it does to gears and bearings.
+    limits : Mapping[str, float]
+        Limits of torques, by channel [N m].
+    """
+
+    instants: ByInstant | None = None
+    use: PartUse | None = None
+    limits: Mapping[str, float] = field(default_factory=dict)
+
+
 class _Answered(NamedTuple):
     """What an answer is made of."""
 
@@ -230,8 +250,7 @@ def state_answer(
     number: int,
     files: Mapping[str, FileDigest],
     quantity: Kind,
-    instants: ByInstant | None = None,
-    use: PartUse | None = None,
+    beside: Beside,
 ) -> None:
     """State what the event does, with the level that it needs.
 
@@ -253,27 +272,40 @@ def state_answer(
         What happened over each history.
     quantity : str
         For which the level has to be enough.
-    instants : ByInstant, optional
-        Peak of a stop by the instant of its brake.
-    use : PartUse, optional
-        What it does to gears and bearings.
+    beside : Beside
+        Instants of the brake, damage of gears and bearings, limits of torques.
     """
     of = _Answered(found, extremes, run)
     verdict, figures = _VERDICTS[event](of, files)
-    if instants is not None:
-        low, high = min(instants.peaks), max(instants.peaks)
-        found.say(
-            f"By the instant of the brake within {instants.period:.3g} s, a period of the first "
-            f"mode, the {instants.channel} comes to {low:.2f} to {high:.2f} of rated after it."
-        )
-        name = f"largest {instants.channel} by the instant of the brake, over rated"
-        figures.insert(2, found.value(name, high))
+    if beside.instants is not None:
+        figures.insert(2, _by_instant(found, of, beside.instants, beside.limits))
     if len(runs) > 1:
         error = level_error(runs[number], runs[-1], quantity).error
         _say_level(found, runs, number, quantity, error)
-    damage = part_figures(found, use)
-    shown = [*figures[: 6 - len(damage)], *damage]
+    last = [*limit_figure(found, beside.limits, extremes), *part_figures(found, beside.use)]
+    shown = [*figures[: 6 - len(last)], *last]
+    hardest = hardest_limit(beside.limits, extremes)
+    if hardest is not None and extremes[hardest].largest > beside.limits[hardest]:
+        shaft = hardest.removeprefix("torque of ")
+        verdict = f"{verdict.removesuffix('.')}, beyond the limit of the {shaft}."
     found.answer(QUESTIONS[event], verdict, shown, cautions=_cautions(event, run, files))
+
+
+def _by_instant(
+    found: Findings, of: _Answered, instants: ByInstant, limits: Mapping[str, float]
+) -> KeyFigure:
+    """The largest peak by the instant of the brake, with the limit of its shaft."""
+    low, high = min(instants.peaks), max(instants.peaks)
+    found.say(
+        f"By the instant of the brake within {instants.period:.3g} s, a period of the first "
+        f"mode, the {instants.channel} comes to {low:.2f} to {high:.2f} of rated after it."
+    )
+    name = f"largest {instants.channel} by the instant of the brake, over rated"
+    limit = limits.get(instants.channel)
+    if limit is None:
+        return found.value(name, high)
+    rated = abs(of.extremes[instants.channel].rated)
+    return found.value(name, high, at_most=limit / rated, by=BY)
 
 
 def _say_level(
