@@ -36,8 +36,8 @@ class BearingUse:
         are in equilibrium; 1 is the end of that life.
     band : float
         Numerical uncertainty of the damage by L10.
-    static_safety : float
-        Least S_0.
+    static_safety, static_band : float
+        Least S0, and its numerical uncertainty.
     static_load, at : float
         Largest static equivalent load P_0 [N], and when it is [s].
     pressure : float
@@ -58,6 +58,7 @@ class BearingUse:
     damage: Mapping[str, float]
     band: float
     static_safety: float
+    static_band: float
     static_load: float
     at: float
     pressure: float
@@ -223,16 +224,17 @@ def _bearing_use(
             )
     whole = reduce(add, digests)
     limits = whole.limits(one.rated)
-    band = 0.0
+    shares = [0.0, 0.0]
     if coarser is not None:
-        first, second = (float(each.standard.of_standard[0]) for each in coarser)
-        band = damage["L10"] * abs(second / first - 1.0) if first else 0.0
+        sizes = ([float(of.standard.of_standard[0]), of.static_load] for of in coarser)
+        shares = [abs(b / a - 1.0) if a else 0.0 for a, b in zip(*sizes, strict=True)]
     return BearingUse(
         name,
         one.entry_name,
         damage,
-        band,
+        damage["L10"] * shares[0],
         limits.static_safety,
+        limits.static_safety * shares[1],
         limits.max_static,
         whole.at,
         limits.max_pressure,

@@ -234,7 +234,7 @@ def state_parts(found: Findings, use: PartUse, question: PartQuestion, level: st
         found.found(f"damage of {flank.name} each {use.per}", flank.damage.largest, band)
     for one in use.bearings.values():
         found.found(f"damage of {one.name} by L10 each {use.per}", one.damage["L10"], one.band)
-        found.found(f"S0 of {one.name}", one.static_safety)
+        found.found(f"S0 of {one.name}", one.static_safety, one.static_band)
     if use.gears:
         found.data("gear_damage", gear_damage_rows(use))
     if use.bearings:
@@ -268,7 +268,11 @@ def part_figures(found: Findings, use: PartUse | None) -> list[KeyFigure]:
         least = min(_bearings(use), key=lambda one: one.static_safety)
         figures.append(
             found.value(
-                f"static safety S0 of {least.name}", least.static_safety, at_least=1.0, by="ISO 76"
+                f"static safety S0 of {least.name}",
+                least.static_safety,
+                least.static_band,
+                at_least=1.0,
+                by="ISO 76",
             )
         )
     elif use.gears:

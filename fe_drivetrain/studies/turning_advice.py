@@ -22,11 +22,8 @@ from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.mode_levels import plain_rungs
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
-from fe_drivetrain.studies.turning_quantities import (
-    TurningModel,
-    TurningQuantity,
-    turning_quantity,
-)
+from fe_drivetrain.studies.turning_model import TurningModel, TurningQuantity
+from fe_drivetrain.studies.turning_quantities import turning_quantity
 
 
 @dataclass(frozen=True)
