@@ -215,10 +215,13 @@ class _Mesh:
         ]
 
     def _at_peak(self, peak: float) -> dict[str, FlankDamage]:
-        """Both flanks at the largest torque, once."""
+        """Both flanks at the largest torque, once, at the speed of the class that is nearest."""
         nearest = int(np.abs(self.whole.torques - peak).argmin())
-        hub, one = self.whole.hub[nearest], np.ones(1)
-        once = TorqueSpectrum(abs(peak), np.array([peak]), one, _ONCE * one, hub[None])
+        hub, speed = self.whole.hub[nearest], float(self.whole.speeds(0.0)[nearest])
+        turns, seconds = np.array([_ONCE]), np.ones(1)
+        if speed > 0.0:
+            seconds = 2.0 * np.pi * turns / speed
+        once = TorqueSpectrum(abs(peak), np.array([peak]), seconds, turns, hub[None])
         return self._damage(once, [self.fine.one(peak, hub, 1.0)[self.name]], factors=True)
 
 
