@@ -38,6 +38,15 @@ class LifeRequest:
     scene: SceneName
     loads: LoadFiles
     site: WindSite = None
+    event: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--event",
+            metavar="NAME=COUNT",
+            help="An event of `transient` that comes so many times a year beside the files, as in "
+            "stop=700. May be repeated.",
+        ),
+    ] = None
     bearing: BearingEntries = None
     only: Annotated[
         str | None,
@@ -162,6 +171,28 @@ class LifeRequest:
     def folder(self) -> Path:
         """The result folder."""
         return self.out or Path("reports", "life", Path(self.scene).stem)
+
+    @property
+    def events(self) -> dict[str, float]:
+        """How often each event comes in a year.
+
+        Raises
+        ------
+        InputError
+            One has no number, or is given twice.
+        """
+        found: dict[str, float] = {}
+        for text in self.event or ():
+            name, _, count = text.partition("=")
+            try:
+                number = float(count)
+            except ValueError:
+                raise InputError(
+                    f"--event {text}: write NAME=COUNT, as in --event stop=700"
+                ) from None
+            refuse_again("--event", name, found)
+            found[name.strip().replace("-", "_")] = number
+        return found
 
     @property
     def place(self) -> Site | None:

@@ -119,8 +119,8 @@ class TransientRequest:
         bool,
         typer.Option(
             "--rollers",
-            help="Bring rollers of all bearings into equilibrium in every step, for L10r and L10mr "
-            "and the largest Hertz pressure. Takes minutes.",
+            help="Bring rollers of all bearings into equilibrium every 5 ms, for L10r, L10mr and "
+            "the largest Hertz pressure. May take minutes.",
         ),
     ] = False
     bearing: BearingEntries = None

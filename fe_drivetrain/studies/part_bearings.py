@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
 from fe_drivetrain.bearing_life.life.rated import rated_from_catalogue
+from fe_drivetrain.bearing_life.life.reference_life import Turning
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics.bodies.bearing_reactions import planet_bearing_name
@@ -33,7 +34,7 @@ def counted_parts(
     options : LifeOptions
         Catalogues, lubricants and rules of lives.
     rollers : bool
-        Whether rollers are brought into equilibrium in every step.
+        Whether rollers are brought into equilibrium.
 
     Raises
     ------
@@ -59,7 +60,9 @@ def counted_parts(
         entry = entry_of(name, entries[name], known)
         profile = profile_of(entry, choices.profiled)
         rated = rated_from_catalogue(entries[name], *choices.catalogues, **profile)
-        turning = "outer" if name in planets else None if name in main else "inner"
+        turning: Turning | None = None
+        if name not in main:
+            turning = "outer" if name in planets else "inner"
         own = own_rules(rules, turning, None if name in main else oil)
         found.append(ForcedBearing(name, entries[name], entry, rated, own))
     others = tuple(name for name in names if name not in entries)

@@ -183,7 +183,8 @@ class PartRating:
             The same history with a step and with twice that step, for the band of the step.
         """
         alone = any(one.alone for one in digests)
-        gears, left_out = {}, ()
+        gears: dict[str, FlankUse] = {}
+        left_out: tuple[str, ...] = ()
         if self.gears is not None:
             gears = self.gears.under(digests, times, coarser)
             left_out = self.gears.left_out
@@ -218,10 +219,8 @@ def _bearing_use(
         "L10m": weighted(lambda each: float(each.standard.of_standard[1])),
     }
     if parts.rollers:
-        for kind in ("L10r", "L10mr"):
-            damage[kind] = weighted(
-                lambda each, kind=kind: each.rollers.totals[kind] if each.rollers else 0.0
-            )
+        damage["L10r"] = weighted(lambda each: _of_rollers(each, "L10r"))
+        damage["L10mr"] = weighted(lambda each: _of_rollers(each, "L10mr"))
     whole = reduce(add, digests)
     limits = whole.limits(one.rated)
     shares = [0.0, 0.0]
@@ -243,3 +242,8 @@ def _bearing_use(
         whole.flanges,
         tuple(float(one.standard.of_standard[0]) for one in digests),
     )
+
+
+def _of_rollers(digest: BearingDigest, kind: str) -> float:
+    """Damage by a kind of life that needs rollers; 0 without them."""
+    return 0.0 if digest.rollers is None else digest.rollers.totals[kind]

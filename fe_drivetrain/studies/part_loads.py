@@ -33,6 +33,9 @@ from fe_drivetrain.turbine_loads.hub_loads.drive_history import DriveHistory
 
 RPM = 30.0 / np.pi
 
+ROLLER_STEP = 5e-3
+"""Time from one equilibrium of rollers to the next, where steps are shorter [s]."""
+
 
 @dataclass(frozen=True, eq=False)
 class ForcedBearing:
@@ -68,7 +71,7 @@ class CountedParts:
     bearings : tuple of ForcedBearing
         Those with an entry of the catalogue.
     rollers : bool
-        Whether rollers of bearings are brought into equilibrium in every step.
+        Whether rollers of bearings are brought into equilibrium, see `ROLLER_STEP`.
     """
 
     bearings: tuple[ForcedBearing, ...] = ()
@@ -127,17 +130,16 @@ class BearingDigest:
         )
 
     def limits(self, rated: RatedBearing) -> Limits:
-        """Static safety and largest Hertz pressure, of all steps with rollers, else at the peak."""
-        if self.rollers is not None:
-            return self.rollers.limits
+        """Static safety and largest Hertz pressure at the peak, and of all steps with rollers."""
         laminae, converged = rigid_rings(rated.bearing)(self.peak[None])
         pressures = max_pressures(rated, balanced(laminae, converged))
         use = static_use(rated, self.peak[None], pressures)
-        return Limits(
+        found = Limits(
             max_static=self.static_load,
             max_pressure=float(pressures.max()),
             max_use=float(use.max()),
         )
+        return found if self.rollers is None else found + self.rollers.limits
 
 
 @dataclass(frozen=True, eq=False)
@@ -287,7 +289,7 @@ class PartCounter:
         k = int(static.argmax())
         rollers = None
         if self.reader.parts.rollers:
-            rollers = damage_of_forces(one.rated, each, turned, lasting, one.rules)
+            rollers = _rollers_of(one, loads[1:], np.abs(speeds[1:]) * RPM, seconds)
         found = BearingDigest(
             standard_damage(one.rated, carried.loads, turned, lasting, one.rules),
             rollers,
@@ -298,3 +300,13 @@ class PartCounter:
         )
         before = self.bearings.get(one.name)
         self.bearings[one.name] = found if before is None else before + found
+
+
+def _rollers_of(one: ForcedBearing, loads: Floats, rpm: Floats, seconds: Floats) -> Damage:
+    """Damage with rollers in equilibrium, of loads (k, p, 6) every `ROLLER_STEP` at most."""
+    every, count = max(1, int(ROLLER_STEP / seconds.mean() + 1e-6)), loads.shape[1]
+    first = np.arange(0, len(loads), every)
+    lasting = np.repeat(np.add.reduceat(seconds, first) / count, count)
+    return damage_of_forces(
+        one.rated, loads[first].reshape(-1, 6), rpm[first].ravel(), lasting, one.rules
+    )

@@ -43,8 +43,8 @@ class DamageOptions:
     lives : LifeOptions
         Catalogues and entries of bearings, lubricants, and rules of lives.
     rollers : bool
-        Whether rollers of all bearings are brought into equilibrium in every step, for L10r, L10mr
-        and the Hertz pressure of all of them; else these are of the largest load alone.
+        Whether rollers of all bearings are brought into equilibrium every 5 ms, for L10r, L10mr and
+        the Hertz pressure of all of these; else that is of the largest load alone.
     site : Site or None
         Whose winds weight histories of operation; they repeat for ever without one.
     """

@@ -22,7 +22,15 @@ from fe_drivetrain.dynamics.bodies.machine import machine_of
 from fe_drivetrain.gear.load_factors import LoadFactors
 from fe_drivetrain.gear.rating import contact_stress
 from fe_drivetrain.report.results import read_results
-from fe_drivetrain.studies import GearOptions, LifeOptions, TransientResult, gears, life, transient
+from fe_drivetrain.studies import (
+    GearOptions,
+    LifeOptions,
+    TransientResult,
+    gears,
+    life,
+    life_events,
+    transient,
+)
 from fe_drivetrain.studies.drivetrain_transient import rated_of
 from fe_drivetrain.studies.gear_machine import gear_train
 from fe_drivetrain.studies.gear_meshes import gear_meshes
@@ -248,7 +256,9 @@ def test_operation_is_damage_of_a_year(tmp_path: Path) -> None:
     assert [row["file"] for row in found.tables["file_damage"]] == ["a", "b"]
 
 
-def test_quantities_are_those_of_events_and_lives(carried: TransientResult, tmp_path: Path) -> None:
+def test_quantities_are_those_of_events_and_lives(
+    carried: TransientResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     known = turning_quantities(WHOLE)
     assert {"transient.stop.stage 3 mesh.damage", "transient.offset.PLC-B.S0"} <= set(known)
     rung = Rung(Level.FLEXIBLE, gearbox_mount(WHOLE, MACHINE), "on its mount")  # type: ignore[arg-type]
@@ -276,10 +286,20 @@ def test_quantities_are_those_of_events_and_lives(carried: TransientResult, tmp_
     np.savetxt(path, table, delimiter=",", header=",".join(head), comments="", fmt="%.12g")
     rpm = RATED.rotor_speed * 30.0 / np.pi
     options = LifeOptions(rotor_speed_rpm=rpm, only="stage 1 pin upwind")
-    years = life(WHOLE, path, options=options).bearings["stage 1 pin upwind"].years
+    monkeypatch.setattr(life_events, "transient", lambda *_, **__: carried)
+    lived = life(WHOLE, path, options=options, events={"dip": 1e3})
+    years = lived.bearings["stage 1 pin upwind"].years
     for kind in ("L10", "L10mr"):
         value = known[f"life.stage 1 pin upwind.{kind}"].value(model)
         assert_allclose(value, years[kind], rtol=1e-6)
+        # a thousand events a year beside it: rates of damage add up
+        once = carried.parts.bearings["stage 1 pin upwind"].damage[kind]
+        with_all = lived.with_events["stage 1 pin upwind"][kind]
+        assert_allclose(1.0 / with_all, 1.0 / years[kind] + 1e3 * once, rtol=1e-9)
+    assert lived.answer.figures[0].name == "L10mr of bearing stage 1 pin upwind with events"
+    for events, said in (({"halt": 1.0}, "halt"), ({"dip": 0.0}, "comes 0 times a year")):
+        with pytest.raises(InputError, match=said):
+            life(WHOLE, path, options=options, events=events)
 
 
 def test_peaks_are_held_against_limits_of_the_file() -> None:
