@@ -325,13 +325,16 @@ def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> lis
     """What limits the verdict, most severe first."""
     said = []
     if event == "stop":
-        said.append("Peaks are of one instant of the brake within a swing of the first mode.")
+        said.append(
+            "Peaks and damage are of one instant of the brake within a swing of the first mode."
+        )
     if event in ("stop", "grid_loss", "dip"):
         said.append("Times and controls of the event, where not stated, are assumptions.")
     if event == "dip":
         said.append("The generator's torque follows the table at any speed, without damping.")
     if event == "run_up":
         said.append("Meshes vary as square waves of their contact ratio, without tip relief.")
+        said.append("Damage of teeth has K_v beside vibrations of meshes that are in the forces.")
     absent = sorted({one.absent for one in files.values() if one.absent})
     if absent:
         said.append(f"Histories have no {' and no '.join(absent)}: their torque acts alone.")

@@ -31,7 +31,7 @@ from fe_drivetrain.studies.transient_runs import LevelRun
 from fe_drivetrain.turbine_loads.histories.sites import Site
 
 LEAST = 1e-15
-"""Damage below which a bar has no length."""
+"""Damage from which on it is drawn."""
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,8 @@ def gear_damage_rows(use: PartUse) -> list[Record]:
             f"damage of the flank each {use.per}": one.damage.flank,
             f"damage of the other flank each {use.per}": one.damage.back,
             f"damage of the root each {use.per}": max(one.damage.root, one.damage.root_back),
-            "± of the largest": one.band,
+            f"largest damage each {use.per}": one.damage.largest,
+            "± of it": one.band if np.isfinite(one.band) else None,
             _borne(use): _over(one.damage.largest),
             "largest torque of the rotor by its mesh [kN m]": one.peak / 1e3,
             "S_H at the peak": one.contact_safety,
@@ -163,8 +164,8 @@ def bearing_damage_rows(use: PartUse) -> list[Record]:
         row: Record = {"bearing": one.name, "entry": one.entry}
         for kind, damage in one.damage.items():
             row[f"damage by {kind} each {use.per}"] = damage
+            row |= {"± of it": one.band} if kind == "L10" else {}
         row |= {
-            "± by L10": one.band,
             **{f"{_borne(use)}, {kind}": _over(damage) for kind, damage in one.damage.items()},
             "S0": one.static_safety,
             "largest P_0 [kN]": one.static_load / 1e3,
@@ -201,14 +202,15 @@ def damage_chart(use: PartUse) -> Chart:
         "bearings, L10": {one.name: one.damage["L10"] for one in use.bearings.values()},
     }
     known = {
-        name: {part: min(value, 1e3) for part, value in values.items()}
+        name: {part: min(value, 1e3) for part, value in values.items() if value > LEAST}
         for name, values in groups.items()
-        if values
     }
-    positive = [v for values in known.values() for v in values.values() if v > LEAST]
+    known = {name: values for name, values in known.items() if values}
+    positive = [value for values in known.values() for value in values.values()]
     least = min(positive, default=LEAST) / 3.0
+    without = "; parts without any are left out"
     return bars(
-        f"Damage of gears and bearings each {use.per}; 1 is the end of a life",
+        f"Damage of gears and bearings each {use.per}, 1 is the end of a life{without}",
         known,
         f"damage each {use.per}",
         least=least,

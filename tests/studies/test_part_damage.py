@@ -14,7 +14,7 @@ from fe_drivetrain.command_line import main
 from fe_drivetrain.common.array_records import as_arrays, from_arrays
 from fe_drivetrain.common.components import FORCES, GRAVITY
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.drivetrain_file import read_drivetrain
+from fe_drivetrain.drivetrain_file import Scene, read_drivetrain
 from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.bearing_reactions import BearingModel
 from fe_drivetrain.dynamics.bodies.levels import Level
@@ -23,12 +23,14 @@ from fe_drivetrain.gear.load_factors import LoadFactors
 from fe_drivetrain.gear.rating import contact_stress
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.studies import (
+    DamageOptions,
     GearOptions,
     LifeOptions,
     TransientResult,
     gears,
     life,
     life_events,
+    loads,
     transient,
 )
 from fe_drivetrain.studies.drivetrain_transient import rated_of
@@ -41,7 +43,6 @@ from fe_drivetrain.studies.part_bearings import counted_parts
 from fe_drivetrain.studies.part_damage import times_a_year
 from fe_drivetrain.studies.part_gears import GearUses
 from fe_drivetrain.studies.part_loads import PartDigest
-from fe_drivetrain.studies.transient_parts import DamageOptions
 from fe_drivetrain.studies.turning_model import TurningModel
 from fe_drivetrain.studies.turning_quantities import turning_quantities
 from fe_drivetrain.turbine_loads.histories.sites import Site
@@ -332,3 +333,24 @@ def test_the_page_shows_damage_and_safety(tmp_path: Path) -> None:
     assert broken_rules(results) == []
     titles = [section.title for section in results.sections]
     assert "Gears and bearings" in titles
+
+
+@pytest.mark.parametrize(("share", "status"), [(1.2, "good"), (1.05, "bad")])
+def test_histories_are_held_against_the_limit_of_the_main_shaft(
+    tmp_path: Path, share: float, status: str
+) -> None:
+    """A torque that swings to 1.1 of rated, alone; the limit is that of the shaft it is in."""
+    limits = {"limits.peak_torque": {"LSS": share * RATED.torque, "HSS": 1e9}}
+    time = np.arange(0.0, 40.0, 0.1)
+    table = np.column_stack([time, RATED.torque * (1.0 + 0.1 * np.cos(time))])
+    path = tmp_path / "torque.csv"
+    header = "time [s],Mx [N m]"
+    np.savetxt(path, table, delimiter=",", header=header, comments="", fmt="%.9g")
+    scene = read_drivetrain("nrel_5mw", limits)
+    assert isinstance(scene, Scene)
+    found = loads(path, scene=scene)
+    (peak,) = [one for one in found.answer.figures if one.name == "peak torque Mx"]
+    assert peak.status == status
+    assert_allclose(
+        [peak.value, peak.upper], [1.1 * RATED.torque / 1e3, share * RATED.torque / 1e3]
+    )
