@@ -114,9 +114,10 @@ def run(run: Run, page: Page) -> None:
     check(page, laminae, loads[ALONE][0])
     page.section("Other controller")
     page.text(
-        "Not reproduced: appendix A of the thesis repeats figures 4.13 and 4.14 with a better "
-        "tuned pitch controller, which varies less and moves the moment towards 180 deg. The "
-        "surrogate holds the pitch of the mean wind: there is no controller to tune. How far the "
+        "Appendix A of the thesis repeats figures 4.13 and 4.14 with a better tuned pitch "
+        "controller, which varies less and moves the moment towards 180 deg. The loads of this "
+        "case hold the pitch of the mean wind. `histories/controllers` has a turbine that moves, "
+        "with two tunings of its controller, beside the appendix's statements. How far the "
         "rotor's mean moment moves the cloud is in the table of directions."
     )
     page.image("The rollers of bearing S", run.sketch(*rolling_elements(bearing)))

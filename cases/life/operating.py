@@ -3,11 +3,20 @@
 from fe_drivetrain.report.suite import Page
 
 
-def state_assumptions(page: Page) -> None:
-    """What neither the thesis nor the catalogue gives."""
+def state_assumptions(page: Page, moving: bool = False) -> None:
+    """What neither the thesis nor the catalogue gives, of a turbine that moves, or pitch held."""
     page.assume(
         "bearing S", "D 65, L 95, D_pw 787.4 mm, 2 x 36 rollers", "", "bearing/ratings: fits C, C0"
     )
+    if moving:
+        page.assume(
+            "hub loads",
+            "of a turbine that moves",
+            "",
+            "generic 2 MW rotor with a controller of ours, in place of the thesis's 1.5 MW turbine",
+        )
+        page.assume("rotor speed", "of each step", "", "the turbine's")
+        return
     page.assume(
         "hub loads",
         "surrogate",

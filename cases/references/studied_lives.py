@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,7 +26,14 @@ from fe_drivetrain.bearing_life.life import (
 from fe_drivetrain.cases.references.thesis_beam import BEAM, beam_body, housed_body
 from fe_drivetrain.common import Floats
 from fe_drivetrain.turbine_loads.histories import Site, site_life
-from fe_drivetrain.turbine_loads.hub_loads import Condition, Rotor, hub_load_set
+from fe_drivetrain.turbine_loads.hub_loads import (
+    Condition,
+    Rotor,
+    designed_controller,
+    hub_load_set,
+    similar_turbine,
+    turbine_histories,
+)
 
 #: Mean wind speeds of Stirling 2023, section 5.1, and limits of their bins [m/s].
 SPEEDS = np.arange(4.0, 25.0, 2.0)
@@ -77,6 +85,69 @@ def hub_loads_of(sets: Sequence[Winds]) -> list[Floats]:
     every = round(4.0 / sets[0].rate)
     loads = hub_load_set(conditions, sets[0].duration, 4.0).loads[:, ::every]
     return list(loads.reshape(len(sets), len(SPEEDS), -1, 6))
+
+
+class Hub(NamedTuple):
+    """Hub loads of a set of winds, and how fast the rotor turns.
+
+    Attributes
+    ----------
+    loads : Floats
+        (winds, steps, 6) [N, N m].
+    speed : Floats
+        (winds, steps) of the rotor [1/min].
+    """
+
+    loads: Floats
+    speed: Floats
+
+
+def pitch_held(sets: Sequence[Winds]) -> list[Hub]:
+    """Of the surrogate, whose pitch and speed are those of the mean wind."""
+    return [
+        Hub(loads, np.repeat(rotor_speed()[:, None], loads.shape[1], axis=1))
+        for loads in hub_loads_of(sets)
+    ]
+
+
+def with_controller(
+    sets: Sequence[Winds], progress: Callable[[int], None] | None = None
+) -> list[Hub]:
+    """Of the turbine that moves, under the same seeds, with the speed of each step.
+
+    Parameters
+    ----------
+    sets : sequence of Winds
+        With seeds, length and rate in common.
+    progress : callable, optional
+        Called with the number of histories done.
+    """
+    turbine = similar_turbine(Rotor())
+    conditions = [
+        Condition(v, one.turbulence, one.shear, s)
+        for one in sets
+        for v in SPEEDS
+        for s in range(1, sets[0].seeds + 1)
+    ]
+    made = turbine_histories(
+        conditions,
+        turbine,
+        designed_controller(turbine),
+        duration=sets[0].duration,
+        progress=progress,
+    )
+    loads, speeds = [], []
+    for history in made:
+        every = round(1.0 / (sets[0].rate * history.history.step))
+        loads.append(history.history.loads[::every])
+        speeds.append(np.abs(history.rotor_speed[::every]) * 30.0 / np.pi)
+    shape = (len(sets), len(SPEEDS), -1)
+    return [
+        Hub(*both)
+        for both in zip(
+            np.array(loads).reshape(*shape, 6), np.array(speeds).reshape(shape), strict=True
+        )
+    ]
 
 
 @dataclass(frozen=True)
@@ -185,9 +256,13 @@ def rotor_speed() -> Floats:
     return np.array([Rotor().rotor_speed(v) * 30.0 / np.pi for v in SPEEDS])
 
 
-def by_wind(lives: Floats) -> Floats:
-    """Years at each wind speed, of lives (winds, steps) in million revolutions."""
-    return equivalent_life(years(lives, rotor_speed()[:, None]))
+def by_wind(lives: Floats, speed: Floats | None = None) -> Floats:
+    """Years at each wind speed, of lives (winds, steps) in million revolutions.
+
+    At the rotor's speed of the mean wind, or at that of each step [1/min].
+    """
+    turning = rotor_speed()[:, None] if speed is None else speed
+    return equivalent_life(years(lives, turning))
 
 
 def at_site(of_winds: Floats, mean_wind: float) -> float:

@@ -324,7 +324,9 @@ OF_NO_OTHER = {
             "dynamics/transmission_error",
         ),
         "of the equations that Park et al. print, put right on their own drivetrain": (
+            "dynamics/park_bearings",
             "dynamics/park_bending",
+            "dynamics/park_by_angle",
             "dynamics/park_sidebands",
             "dynamics/park_time",
         ),

@@ -169,3 +169,41 @@ def test_a_mesh_that_was_eliminated_cannot_vary() -> None:
     eliminated = replace(system, unchangeable=(name,))
     with pytest.raises(InputError, match="eliminated by its stiffness"):
         varying_equations(eliminated, {mesh: Meshing(1.6, 128.0)})
+
+
+@pytest.mark.parametrize("level", [Level.TORSIONAL, Level.RIGID])
+def test_a_turn_of_the_driving_gear_has_as_many_periods_as_it_has_teeth(level: Level) -> None:
+    """Whatever the speed; of a planetary stage with its ring held, the ring's teeth a turn."""
+    machine = library_machine("nrel_750kw")
+    generator = machine.generator.model_copy(update={"stiffness": 0.0})
+    system = machine_system(machine.model_copy(update={"generator": generator}), level)
+    ratios = {f"stage 1 {kind}-planet": 1.6 for kind in ("sun", "ring")}
+    ratios |= {f"stage {number} mesh": 1.6 for number in (2, 3)}
+    for speed in (0.3, 2.3):
+        meshing = machine_meshing(machine, speed, ratios)
+        found = varying_equations(system, meshing, speed, by="angle").springs
+        assert not found.frequency.any()
+        for name, body in (
+            ("stage 1 sun-planet 1", "stage 1 carrier"),
+            ("stage 1 ring-planet 2", "stage 1 carrier"),
+            ("stage 2 mesh", "stage 2 gear"),
+            ("stage 3 mesh", "stage 3 gear"),
+        ):
+            number = int(name.split()[1])
+            spring = next(k for k, of in enumerate(system.spring_names) if of.startswith(name))
+            turns = found.turns[spring]
+            at = system.names.index(f"{body} rx")
+            assert abs(turns[at]) * 2.0 * np.pi == pytest.approx(machine.meshing[number - 1][1][0])
+            assert np.count_nonzero(turns) == 1
+
+
+def test_meshes_by_angle_need_a_speed() -> None:
+    with pytest.raises(InputError, match="reference speed of 0 rad/s but need one above 0"):
+        varying_equations(park()[0], {"stage 3 mesh": Meshing(1.6, 128.0)}, by="angle")
+
+
+def test_meshes_by_angle_need_what_turns_freely() -> None:
+    machine = library_machine("park_2021")
+    held = machine_system(machine, Level.TORSIONAL, held_generator=True)
+    with pytest.raises(InputError, match="need one way to turn, but the system has 0"):
+        varying_equations(held, {"stage 3 mesh": Meshing(1.6, 128.0)}, 0.6, by="angle")

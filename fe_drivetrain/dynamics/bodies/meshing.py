@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
+from typing import Literal
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics.bodies.equations import (
     Equations,
+    equations_of,
     equations_of_motion,
     spring_laws,
     wave_table,
@@ -25,6 +27,7 @@ from fe_drivetrain.dynamics.bodies.equations import (
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.bodies.mesh_errors import MeshError
 from fe_drivetrain.dynamics.bodies.planetary import equal_angles
+from fe_drivetrain.dynamics.bodies.steady_state import free_motions
 from fe_drivetrain.dynamics.bodies.system import System, springs_named
 from fe_drivetrain.gear.meshes import MeshStiffness, StiffnessTable, square_wave_series
 from fe_drivetrain.gear.planets import ring_phases, sun_phases
@@ -34,6 +37,8 @@ HARMONICS = 8
 
 INTERVALS = 256
 """Number of intervals of a wave's spline in a period."""
+
+_ABOUT_AXIS = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0])
 
 
 def contact_wave(contact_ratio: float, harmonics: int = HARMONICS) -> Floats:
@@ -175,8 +180,9 @@ def varying_equations(
     backlash: float | None = None,
     damping: float = 0.0,
     harmonics: int = HARMONICS,
+    by: Literal["time", "angle"] = "time",
 ) -> Equations:
-    """Equations of motion of a system whose meshes vary with time, and have errors.
+    """Equations of motion of a system whose meshes vary with time or angle, and have errors.
 
     Parameters
     ----------
@@ -185,7 +191,7 @@ def varying_equations(
     meshing : Mapping[str, Meshing]
         Variations by the name of a mesh; all of its slices vary together.
     speed : float
-        Reference speed, for gyroscopic terms [rad/s].
+        Reference speed of the rotor, for gyroscopic terms [rad/s].
     backlash : float, optional
         Backlash of all these meshes along their lines of action [m]: teeth part, and touch with
         their other flanks; without, meshes pull as they push.
@@ -194,6 +200,11 @@ def varying_equations(
         dampers.
     harmonics : int
         Number of harmonics of the waves.
+    by : "time" or "angle"
+        Whether phases go with the time, at the frequencies of the meshes, or with the angle of the
+        carrier or gear that drives the stage, which passes as many periods at the reference speed
+        (Park et al. 2021, Table 1: K(t) and K(theta)). Angles are then those since t = 0, whole
+        turns with them.
 
     Returns
     -------
@@ -202,7 +213,8 @@ def varying_equations(
     Raises
     ------
     InputError
-        A mesh is not in the system, or a body without mass was eliminated by it.
+        A mesh is not in the system, a body without mass was eliminated by it, or angles are asked
+        for without a reference speed, or of a system that does not turn freely.
     """
     count = len(system.spring_names)
     wave, phase, frequency = np.full(count, -1), np.zeros(count), np.zeros(count)
@@ -224,7 +236,10 @@ def varying_equations(
             error_phase[of], error_turns[of] = mesh.error.phase, mesh.error.turns
     dampers = system.damping + damping * system.stiffness
     springs = spring_laws(system.rows, system.stiffness, dampers, lower=-half, upper=half)
-    springs = springs.in_phase(phase, frequency)
+    if by == "time":
+        springs = springs.in_phase(phase, frequency)
+    else:
+        springs = springs.in_phase(phase, 0.0, _periods_a_radian(system, frequency, speed))
     if waves:
         springs = springs.with_waves(np.stack(waves), wave)
     if errors:
@@ -235,3 +250,29 @@ def varying_equations(
         speed * system.gyroscopic,
         system.extra - speed**2 * system.centripetal,
     )
+
+
+def _periods_a_radian(system: System, frequency: Floats, speed: float) -> Floats:
+    """(m, n) mesh periods of each spring by the angle of the gear that drives its stage [1/rad]."""
+    if not speed > 0.0:
+        raise InputError(
+            f"meshes that vary by angle have a reference speed of {speed:g} rad/s but need one "
+            "above 0: give the speed at which their frequencies are"
+        )
+    found = np.zeros((len(frequency), len(system.names)))
+    if not frequency.any():
+        return found
+    free = free_motions(equations_of(system))
+    if free.shape[1] != 1:
+        raise InputError(
+            f"meshes that vary by angle need one way to turn, but the system has {free.shape[1]}: "
+            "leave out what holds the generator"
+        )
+    rigid = free[:, 0]
+    rotor = system.load_on("rotor", _ABOUT_AXIS)
+    for i in np.flatnonzero(frequency):
+        stage = " ".join(system.spring_names[i].split()[:2])
+        carrier = f"{stage} carrier"
+        row = system.load_on(carrier if carrier in system.bodies else f"{stage} gear", _ABOUT_AXIS)
+        found[i] = frequency[i] / (speed * float(row @ rigid) / float(rotor @ rigid)) * row
+    return found

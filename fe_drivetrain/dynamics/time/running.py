@@ -150,9 +150,8 @@ def running(
     if hub_loads and level is not Level.TORSIONAL:
         system = _light_rotor(machine, system)
     system = with_damping_ratios(machine, system, damping)
-    equations = varying_equations(system, {}, rotor_speed)
-    if teeth:
-        equations = _with_teeth(machine, system, rotor_speed)
+    meshing = machine_meshing(machine, rotor_speed, contact_ratios(machine)) if teeth else {}
+    equations = varying_equations(system, meshing, rotor_speed, by="angle")
     if backlash:
         equations = _with_backlash(machine, system, equations, backlash)
     to_rotor = system.load_on("rotor", _ABOUT_AXIS)
@@ -203,23 +202,6 @@ def _front(machine: Machine, k: int) -> str:
     if k == 0:
         return "rotor"
     return f"stage {k} {'sun' if machine.stages[k - 1].kind == 'planetary' else 'pinion'}"
-
-
-def _with_teeth(machine: Machine, system: System, rotor_speed: float) -> Equations:
-    """Meshes whose stiffness goes with the angle of the gear that drives each stage."""
-    # frequencies at 1 rad/s of the rotor are periods for each radian of it, over 2 pi
-    meshing = machine_meshing(machine, 1.0, contact_ratios(machine))
-    found = varying_equations(system, meshing, rotor_speed)
-    turns = np.zeros(found.springs.rows.shape)
-    for number in range(1, len(machine.stages) + 1):
-        kind = "carrier" if machine.stages[number - 1].kind == "planetary" else "gear"
-        row = system.load_on(f"stage {number} {kind}", _ABOUT_AXIS)
-        speed = machine.speeds[number - 1]
-        for i, name in enumerate(system.spring_names):
-            if found.springs.wave[i] >= 0 and name.startswith(f"stage {number} "):
-                turns[i] = found.springs.frequency[i] / speed * row
-    springs = found.springs.in_phase(found.springs.phase, 0.0, turns)
-    return replace(found, springs=springs)
 
 
 def _with_backlash(
