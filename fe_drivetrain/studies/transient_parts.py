@@ -18,13 +18,8 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.part_bearings import counted_parts
-from fe_drivetrain.studies.part_damage import (
-    BearingUse,
-    FlankUse,
-    PartRating,
-    PartUse,
-    times_a_year,
-)
+from fe_drivetrain.studies.part_damage import BearingUse, PartRating, PartUse, times_a_year
+from fe_drivetrain.studies.part_gears import FlankUse
 from fe_drivetrain.studies.part_loads import NO_PARTS, CountedParts
 from fe_drivetrain.studies.transient_digest import FileDigest
 from fe_drivetrain.studies.transient_runs import LevelRun
