@@ -10,6 +10,7 @@ import typer
 
 from fe_drivetrain.command_line.options import (
     Channels,
+    Condensed,
     DrivetrainName,
     Mapping,
     Resume,
@@ -81,10 +82,19 @@ class GearsRequest:
         typer.Option(
             "--level",
             metavar="LEVEL",
-            help="Level of the rating: torsional (load shared by formula), rigid, flexible. "
-            "Default: the finest that the data allow.",
+            help="Level of the rating: torsional (load shared by formula), rigid, flexible, or the "
+            "name of a condensed one. Default: the finest.",
         ),
     ] = None
+    condensed: Condensed = False
+    rollers: Annotated[
+        bool,
+        typer.Option(
+            "--rollers",
+            help="The last level has bearings with a catalogue entry on their rollers, with their "
+            "clearance: up to minutes for each torque.",
+        ),
+    ] = False
     tolerance: Annotated[
         str,
         typer.Option(
@@ -153,6 +163,8 @@ class GearsRequest:
 
         return GearOptions(
             level=self.level,
+            condensed=self.condensed,
+            rollers=self.rollers,
             tolerance=parse_tolerance(self.tolerance),
             azimuths=self.azimuths,
             slices=self.slices,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fe_drivetrain.command_line.names import complete_scene
-from fe_drivetrain.command_line.options import with_options
+from fe_drivetrain.command_line.options import Condensed, with_options
 from fe_drivetrain.command_line.settings import (
     DrivetrainSettings,
     parse_settings,
@@ -93,14 +93,7 @@ class ModesRequest:
             help="Error of a frequency that a simpler level may have, as in 5% or 0.05.",
         ),
     ] = "5%"
-    condensed: Annotated[
-        bool,
-        typer.Option(
-            "--condensed",
-            help="Compare levels with those beyond, too: housings of main bearings at both bounds, "
-            "gearbox on its mount, carriers, main shaft in its meridian. Meshes the housings once.",
-        ),
-    ] = False
+    condensed: Condensed = False
     out: Annotated[
         Path | None,
         typer.Option(

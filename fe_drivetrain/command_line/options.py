@@ -129,6 +129,14 @@ Scheduler = Annotated[
         "(docs/clusters.md). Default: processes of this machine.",
     ),
 ]
+Condensed = Annotated[
+    bool,
+    typer.Option(
+        "--condensed",
+        help="Levels go on with what has to be condensed: housings of main bearings at both "
+        "bounds, carriers, the main shaft in its meridian. Meshes the housings once.",
+    ),
+]
 
 
 def with_options(

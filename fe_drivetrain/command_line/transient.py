@@ -64,6 +64,7 @@ def transient_command(context: typer.Context, asked: TransientRequest) -> int:
             values,
             loads=asked.loads or (),
             level=asked.level,
+            condensed=asked.condensed,
             quantity=asked.quantity,  # type: ignore[arg-type]
             tolerance=share,
             duration=asked.duration,

@@ -13,6 +13,7 @@ from fe_drivetrain.command_line.options import (
     BearingEntries,
     Catalogues,
     Channels,
+    Condensed,
     DrivetrainName,
     Mapping,
     Resume,
@@ -79,10 +80,11 @@ class TransientRequest:
         typer.Option(
             "--level",
             metavar="LEVEL",
-            help="torsional, rigid (bodies), or flexible (shafts). Default: all of them, compared, "
-            "and the cheapest that is enough.",
+            help="torsional, rigid (bodies), flexible (shafts), or the name of a condensed one. "
+            "Default: all of them, compared, and the cheapest that is enough.",
         ),
     ] = None
+    condensed: Condensed = False
     quantity: Annotated[
         str,
         typer.Option(

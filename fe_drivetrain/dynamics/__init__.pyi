@@ -24,7 +24,9 @@ from .bodies.catalogue_seats import on_catalogue as on_catalogue
 from .bodies.condensed_rungs import SOFT_SEATS as SOFT_SEATS
 from .bodies.condensed_rungs import STIFF_SEATS as STIFF_SEATS
 from .bodies.condensed_rungs import Rungs as Rungs
+from .bodies.condensed_rungs import plain_rungs as plain_rungs
 from .bodies.condensed_rungs import rungs_of as rungs_of
+from .bodies.condensed_rungs import with_rollers as with_rollers
 from .bodies.elastic_ring import Rim as Rim
 from .bodies.elastic_ring import with_rim as with_rim
 from .bodies.equations import Equations as Equations
@@ -52,6 +54,7 @@ from .bodies.gear_pairs import pitch_contacts as pitch_contacts
 from .bodies.gear_pairs import with_iso_stiffness as with_iso_stiffness
 from .bodies.gearbox_mount import gearbox_housing as gearbox_housing
 from .bodies.gearbox_mount import on_mount as on_mount
+from .bodies.gearbox_mount import stated_mount as stated_mount
 from .bodies.housing_bounds import Between as Between
 from .bodies.housing_bounds import HousingBounds as HousingBounds
 from .bodies.housing_bounds import housing_bounds as housing_bounds

@@ -18,6 +18,7 @@ from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file import Drivetrain, Scene
 from fe_drivetrain.dynamics import Level, Machine, System, machine_of, machine_system
 from fe_drivetrain.dynamics.bodies.damping_ratios import with_damping_ratios
+from fe_drivetrain.dynamics.bodies.gearbox_mount import stated_mount
 from fe_drivetrain.dynamics.bodies.levels import torsional
 from fe_drivetrain.dynamics.torsion import changed, natural_modes
 from fe_drivetrain.export.formats.elastodyn import Torsion
@@ -177,7 +178,9 @@ def turning_of(drivetrain: Drivetrain, level: Level, held: bool = False) -> Turn
         The drivetrain lacks data that the level needs; the message names them.
     """
     machine = machine_of(drivetrain)
-    system = _damped(drivetrain, machine, machine_system(machine, level, held_generator=held))
+    gives = stated_mount(drivetrain, machine)
+    system = machine_system(machine, level, held_generator=held, flexible=gives)
+    system = _damped(drivetrain, machine, system)
     housings = isinstance(drivetrain, Scene) and drivetrain.bearing_units
     not_here = _NOT_HERE[level]
     if housings and level is not Level.TORSIONAL:

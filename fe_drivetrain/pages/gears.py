@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fe_drivetrain.plots.figures import error_range, error_traces
 from fe_drivetrain.report.charts import bars, chart, marked, trace
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
@@ -87,7 +88,7 @@ def _sharing(page: Page, result: GearsResult) -> None:
     page.text(
         "Statics with gravity and the loads of the hub, the carriers turning with the rotor at "
         "their ratios; teeth that would pull are apart. Bands: every other "
-        "azimuth, and half of the slices."
+        "azimuth, half of the slices, and both bounds of condensed housings."
     )
 
 
@@ -221,29 +222,53 @@ def _levels(page: Page, result: GearsResult) -> None:
     page.section("Which model is enough")
     rows: list[Record] = result.tables["levels"]
     first = list(rows[0])[:3]
-    page.add(
-        bars(
-            "Difference of a contact stress from the finest level, the largest of all meshes",
-            {"difference": {str(row["level"]): float(row[first[2]]) for row in rows}},
-            "difference [%]",
-        )
-    )
+    page.add(_against_time(result))
     page.table("Levels", rows, first)
-    sharing: list[Record] = [
-        {
-            "mesh": name,
-            **{f"K_gamma, {one.name}": one.factors[name][0] for one in result.levels},
-            **{f"K_Hbeta, {one.name}": one.factors[name][1] for one in result.levels},
-        }
-        for name in result.meshes
-    ]
-    page.table("Load factors of each level", sharing)
+    for number, factor in enumerate(("K_gamma", "K_Hbeta")):
+        found: list[Record] = [
+            {"mesh": name, **{one.name: one.factors[name][number] for one in result.levels}}
+            for name, mesh in result.meshes.items()
+            if number or mesh.spread.share.shape[1] > 1
+        ]
+        if found:
+            page.table(f"{factor} of each level", found)
     page.text(
         f"Enough within {100 * result.asked.tolerance:g} %: {result.enough}. The torsional level "
         "takes K_gamma and K_Hbeta as the file states them, else K_gamma by the number of planets "
-        "(IEC 61400-4) and K_Hbeta by the helix deviation of the grade; rigid bodies and flexible "
-        "shafts find both by statics."
+        "(IEC 61400-4) and K_Hbeta by the helix deviation of the grade; the others find both by "
+        "statics, with the gearbox's housing on its mount where the file states one. The error of "
+        "the finest level, and the bars, are half of its band of a load."
     )
+    if "bounds" in result.tables:
+        page.table(
+            "Load factors at both bounds of the main bearings' housings", result.tables["bounds"]
+        )
+        page.text(
+            "The outer ring's seat moves on average with the housing, or keeps its shape: the "
+            "truth is between, and the bands have their difference."
+        )
+    if "levels left out" in result.tables:
+        page.table("What the ladder does not have", result.tables["levels left out"])
+
+
+def _against_time(result: GearsResult) -> Chart:
+    """Error of each level against its time."""
+    names = [one.name for one in result.levels]
+    own = max((0.5 * one.stress_band for one in result.meshes.values()), default=0.0)
+    errors = [one.difference for one in result.levels]
+    errors[-1] = max(errors[-1], own)
+    seconds, tolerance = [one.seconds for one in result.levels], result.asked.tolerance
+    bands = [own] * (len(errors) - 1) + [0.0]
+    traces = error_traces(names, seconds, errors, tolerance, names.index(result.enough), bands)
+    found = chart(
+        "Error of a contact stress against the time of each level, the largest of all meshes",
+        traces,
+        x="time [s]",
+        y="error [%]",
+        logarithmic=("x", "y"),
+    )
+    found.figure["layout"]["yaxis"]["range"] = error_range(errors, tolerance, own)
+    return found
 
 
 def _geometry(page: Page, result: GearsResult) -> None:

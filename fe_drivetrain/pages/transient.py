@@ -122,19 +122,26 @@ def _levels(page: Page, result: TransientResult) -> None:
     page.table("The same in numbers", result.tables["levels"])
     page.text(
         "Error: largest difference of an extreme from that of the finest level, over the largest "
-        "value of its channel there; that of the finest, and the bars, are what its step leaves "
-        "uncertain. Time: to build and to integrate once."
+        "value of its channel there; that of the finest, and the bars, are what its step, and "
+        "bounds of housings where there are any, leave uncertain. Time: to condense, to build and "
+        "to integrate once."
     )
+    if "bounds" in result.tables:
+        page.table(
+            "Largest values at both bounds of the main bearings' housings", result.tables["bounds"]
+        )
+    if "levels left out" in result.tables:
+        page.table("What the ladder does not have", result.tables["levels left out"])
 
 
 def _against_time(result: TransientResult, kind: Kind) -> Chart:
     errors = [next(e.error for e in of if e.kind == kind) for of in result.errors]
     chosen = result.runs.index(result.chosen)
-    band = finest_band(result.runs[-1], kind)
+    band = finest_band(result.runs, kind)
     bands = [band] * (len(errors) - 1) + [0.0]
     errors[-1] = max(errors[-1], band)
     traces = error_traces(
-        [run.level.value for run in result.runs],
+        [run.rung.name for run in result.runs],
         [run.seconds for run in result.runs],
         errors,
         result.tolerance,
@@ -142,7 +149,7 @@ def _against_time(result: TransientResult, kind: Kind) -> Chart:
         bands,
     )
     found = chart(
-        f"Error of {QUANTITIES[kind]} against the time of each level; the finest by its step",
+        f"Error of {QUANTITIES[kind]} against the time of each level; the finest by its own band",
         traces,
         x="time [s]",
         y="error [%]",

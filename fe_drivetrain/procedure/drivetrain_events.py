@@ -337,7 +337,8 @@ class BaseMoves(Event):
 
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """One phase; nothing is marked."""
-        base = read_base_motion(self.file, of.system, assembly(of.machine, of.level).bodies)
+        bodies = assembly(of.machine, of.level, flexible=of.flexible).bodies
+        base = read_base_motion(self.file, of.system, bodies)
         machine, pull = of.turning.line(slip)
         made = with_laws(of.equations, machine)
         acting = [_steady_rotor(of), pull, *of.turning.loads()]

@@ -25,6 +25,7 @@ from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.drivetrain_file.without_weight import weightless
+from fe_drivetrain.dynamics.bodies.condensed_rungs import plain_rungs
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.results import Chart
@@ -32,7 +33,6 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gearbox_bearings import (
     MachineBearings,
     catalogue_entries,
-    gearbox_mount,
     machine_bearings,
     machine_with_bearings,
 )
@@ -230,8 +230,8 @@ class DrivetrainBearings:
                 of_units = {name: entry for name, entry in named.items() if name in units}
                 main = bearings_of(drivetrain, replace(choices, named=of_units))
         oil = self.options.oil(drivetrain.operation)
-        on_mount = gearbox_mount(drivetrain, machine)
-        self.machine = machine_bearings(machine, named, choices, oil, on_rollers, on_mount)
+        finest = plain_rungs(drivetrain, machine)[-1]
+        self.machine = machine_bearings(machine, named, choices, oil, on_rollers, finest)
         found = [*main, *self.machine.rated]
         if not found:
             raise InputError(

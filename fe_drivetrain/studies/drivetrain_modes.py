@@ -14,9 +14,11 @@ from fe_drivetrain.drivetrain_file import Drivetrain, Scene
 from fe_drivetrain.dynamics import (
     Level,
     Machine,
+    Rung,
     Rungs,
     machine_of,
     machine_system,
+    plain_rungs,
     rungs_of,
     system_modes,
 )
@@ -24,9 +26,10 @@ from fe_drivetrain.dynamics.bodies.damping_ratios import with_damping_ratios
 from fe_drivetrain.procedure import Excitation, drivetrain_excitations
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.machine_description import assume_housings
 from fe_drivetrain.studies.mode_charts import campbell_chart, frequency_chart
 from fe_drivetrain.studies.mode_findings import state_modes
-from fe_drivetrain.studies.mode_levels import compared_levels, frequency_bands, named_level
+from fe_drivetrain.studies.mode_levels import compared_levels, frequency_bands, named_rung
 from fe_drivetrain.studies.mode_parts import described
 from fe_drivetrain.studies.mode_record import Modes
 from fe_drivetrain.studies.mode_speeds import in_operation
@@ -88,7 +91,8 @@ def modes(
         The drivetrain, with a rotor and a generator.
     level : str or None
         "torsional", "rigid" (bodies with six degrees of freedom) or "flexible" (shafts that bend);
-        None for the finest that the data allow.
+        None for the finest that the data allow. The last two have the gearbox's housing on its
+        mount where the file states one.
     generator : str
         "free" to turn, or "held".
     speeds : tuple of float or None
@@ -104,8 +108,8 @@ def modes(
         Relative error of a frequency that a simpler level may have.
     condensed : bool
         Whether levels are compared with those beyond, too, as far as the file states what they
-        need: housings of main bearings at both bounds, the gearbox on its mount, carriers, the main
-        shaft in its meridian; see `fe_drivetrain.dynamics.rungs_of`. Housings are meshed once.
+        need: housings of main bearings at both bounds, carriers, the main shaft in its meridian;
+        see `fe_drivetrain.dynamics.rungs_of`. Housings are meshed once.
     report : Progress
         Called with the name of each step as it begins.
 
@@ -121,13 +125,15 @@ def modes(
     found.about(drivetrain)
     machine = machine_of(drivetrain)
     acting = (*drivetrain_excitations(machine.stages, blades, PASSINGS), *excitations)
-    asked = _Asked(named_level(level, machine), generator == "held", tolerance)
+    plain = plain_rungs(drivetrain, machine)
+    asked = _Asked(plain, named_rung(level, plain, machine), generator == "held", tolerance)
     over = _speeds_of(drivetrain) if speeds is None else speeds
     rungs = rungs_of(drivetrain, steps=steps) if condensed else None
     record = _record(drivetrain, machine, asked, acting, over, speed, steps, rungs)
+    assume_housings(found, asked.rung.assumes)
     if rungs is not None:
-        _state_rungs(found, rungs)
-    if asked.level is not Level.TORSIONAL:
+        _state_rungs(found, rungs, asked.rung)
+    if asked.rung.level is not Level.TORSIONAL:
         _note_housings(found, drivetrain)
     state_modes(found, machine, record, SHOWN)
     options = {"level": level, "generator": generator, "speeds": over, "speed": speed}
@@ -153,18 +159,18 @@ def _note_housings(found: Findings, drivetrain: Drivetrain) -> None:
         found.note("Housings of the main bearings are rigid here: soft ones lower frequencies.")
 
 
-def _state_rungs(found: Findings, rungs: Rungs) -> None:
-    """State what the condensed levels assume, and what the file lacks for others."""
-    for what in rungs.rungs[-1].assumes:
-        found.assume(what.partition(":")[0], "see source", "", f"assumed: {what}")
+def _state_rungs(found: Findings, rungs: Rungs, rung: Rung) -> None:
+    """State what the condensed levels assume beside a rung, and what the file lacks for others."""
+    assume_housings(found, [a for a in rungs.rungs[-1].assumes if a not in rung.assumes])
     rows = [{"level or part": name, "because": why} for name, why in rungs.left_out.items()]
     found.data("levels left out", rows)
 
 
 class _Asked(NamedTuple):
-    """Level and state of the model, and the error that a simpler level may have."""
+    """Levels and state of the model, and the error that a simpler level may have."""
 
-    level: Level
+    plain: tuple[Rung, ...]
+    rung: Rung
     held: bool
     tolerance: float
 
@@ -181,20 +187,22 @@ def _record(
 ) -> Modes:
     """What is known of the modes."""
     with steps.step("modes at rest"):
-        system = machine_system(machine, asked.level, held_generator=asked.held)
+        level, gives = asked.rung.level, asked.rung.flexible
+        system = machine_system(machine, level, held_generator=asked.held, flexible=gives)
         if drivetrain.damping is not None:
             system = with_damping_ratios(machine, system, drivetrain.damping)
         solved = system_modes(system)
         own = described(machine, system, solved, SHOWN)
     with steps.step("levels"):
-        finer = None if rungs is None else rungs.rungs
+        finer = asked.plain if rungs is None else rungs.rungs
         answers, enough = compared_levels(machine, asked.held, asked.tolerance, finer)
     with steps.step("bands"):
-        bands = frequency_bands(machine, asked.level, asked.held, len(own.frequencies))
+        count = len(own.frequencies)
+        bands = frequency_bands(machine, asked.plain, asked.rung, asked.held, count)
     with steps.step("modes in operation"):
         running = in_operation(system, solved, acting, speeds, speed)
     return Modes(
-        level=asked.level,
+        level=level,
         bands=bands,
         speeds=speeds,
         excitations=acting,

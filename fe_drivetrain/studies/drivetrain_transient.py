@@ -12,6 +12,8 @@ from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.dynamics.bodies.advice import RUNGS, Rung
+from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs, plain_rungs, rungs_of
 from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
 from fe_drivetrain.dynamics.bodies.equations import equations_of_motion, spring_laws, steady
 from fe_drivetrain.dynamics.bodies.levels import Level
@@ -21,7 +23,10 @@ from fe_drivetrain.dynamics.time.machine_channels import Kind
 from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP, Event, event_of
 from fe_drivetrain.procedure.drivetrain_operation import operation
 from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.machine_description import housings_in_words
+from fe_drivetrain.studies.mode_levels import WORDS, named_rung
 from fe_drivetrain.studies.part_damage import PartUse
+from fe_drivetrain.studies.part_loads import NO_PARTS, CountedParts
 from fe_drivetrain.studies.torque_limits import note_limits, torque_limits
 from fe_drivetrain.studies.transient_digest import (
     FileDigest,
@@ -34,6 +39,7 @@ from fe_drivetrain.studies.transient_findings import (
     judge_run,
     state_answer,
     state_assumptions,
+    state_bounds,
     state_figures,
 )
 from fe_drivetrain.studies.transient_instants import ByInstant, by_instant
@@ -50,7 +56,7 @@ from fe_drivetrain.studies.transient_parts import (
     part_question,
     state_parts,
 )
-from fe_drivetrain.studies.transient_result import LEVELS, TransientResult, word_of
+from fe_drivetrain.studies.transient_result import TransientResult
 from fe_drivetrain.studies.transient_runs import (
     Extreme,
     LevelRun,
@@ -89,6 +95,7 @@ def transient(
     *,
     loads: Files = (),
     level: str | None = None,
+    condensed: bool = False,
     quantity: Kind = "bearing",
     tolerance: float = 0.05,
     duration: float | None = None,
@@ -116,7 +123,12 @@ def transient(
     loads : str, path, or sequence of these
         Histories of operation: files (.out, .outb of OpenFAST, or .csv), folders, patterns.
     level : str, optional
-        "torsional", "rigid" or "flexible"; all are run and compared where left out.
+        "torsional", "rigid" or "flexible", or the name of a condensed level; all are run and
+        compared where left out. All but the torsional one have the gearbox's housing on its mount
+        where the file states one.
+    condensed : bool
+        Whether levels go on with what has to be condensed, see `fe_drivetrain.dynamics.rungs_of`:
+        housings of main bearings at both bounds, carriers, the main shaft in its meridian.
     quantity : str
         For which the level has to be enough: "torque", "mesh", "bearing".
     tolerance : float
@@ -148,21 +160,26 @@ def transient(
         raise InputError(
             f"{argument('tolerance')} is {tolerance:g} but must be between 0 and 1: change it"
         )
-    machine = machine_of(drivetrain)
+    steps, machine = Steps(report), machine_of(drivetrain)
+    rated = rated_of(drivetrain, backlash)
+    rungs = Rungs(plain_rungs(drivetrain, machine), {})
+    if condensed:
+        rungs = rungs_of(drivetrain, steps=steps)
     asked = _Asked(
         drivetrain,
         machine,
         event,
         {**_of_file(drivetrain, event), **(values or {})},
-        rated_of(drivetrain, backlash),
+        rated,
+        rungs,
         level,
+        condensed,
         quantity,
         tolerance,
         duration,
         step,
         part_question(drivetrain, machine, damage),
     )
-    steps = Steps(report)
     if event == OPERATION:
         return _operated(asked, recorded_files(loads), options or OperationOptions(), resume, steps)
     if loads:
@@ -181,32 +198,33 @@ class _Asked:
     event: str
     values: dict[str, float | str]
     rated: Rated
+    rungs: Rungs
     level: str | None
+    condensed: bool
     quantity: Kind
     tolerance: float
     duration: float | None
     step: float | None
     parts: PartQuestion
 
-    def levels(self, possible: Sequence[Level]) -> list[Level]:
+    def levels(self, possible: Sequence[Level]) -> list[Rung]:
         """Levels to run, of those at which the event can happen."""
+        every = self.rungs.rungs
         if self.level is None:
-            turns = bool(self.machine.not_given)
-            found = [one for one in possible if not turns or one is Level.TORSIONAL]
+            found = [rung for rung in every if rung.level in possible]
             if not found:
                 raise InputError(
                     f"event {self.event} needs all motions of {self.machine.title!r}, whose file "
                     f"does not state {', '.join(self.machine.not_given)}: add it"
                 )
             return found
-        require_known("level", self.level, tuple(LEVELS))
-        if LEVELS[self.level] not in possible:
-            words = [word for word, one in LEVELS.items() if one in possible]
+        if self.level in WORDS and WORDS[self.level] not in possible:
+            words = [word for word, one in WORDS.items() if one in possible]
             raise InputError(
                 f"event {self.event} does not happen at the level {self.level}: choose one of "
                 f"{', '.join(words)}"
             )
-        return [LEVELS[self.level]]
+        return [named_rung(self.level, every, self.machine)]
 
     def plain(self) -> dict[str, Any]:
         """All of it as plain data."""
@@ -215,6 +233,7 @@ class _Asked:
             "values": self.values,
             "rated": self.rated.plain(),
             "level": self.level,
+            "condensed": self.condensed,
             "quantity": self.quantity,
             "tolerance": self.tolerance,
             "duration": self.duration,
@@ -274,13 +293,13 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     event = event_of(asked.event, asked.values)
     duration = _duration(asked, event)
 
-    made: dict[Level, Prepared] = {}
+    made: dict[str, Prepared] = {}
 
-    def at(level: Level) -> Callable[[float | None], LevelRun]:
+    def at(rung: Rung) -> Callable[[float | None], LevelRun]:
         counted = asked.parts.counted
-        of = made[level] = Prepared(asked.machine, level, asked.rated, event.teeth, parts=counted)
-        planned = event.plan(of.of, duration, asked.rated.slip)
-        return lambda step: of.event(planned, event.step(of.of) if step is None else step)
+        found = _at_rung(asked.machine, asked.rated, event, duration, rung, counted)
+        made[rung.name], run = found
+        return run
 
     found = _findings(asked)
     runs, number = _compared(asked, asked.levels(event.levels), at, asked.step, steps)
@@ -289,17 +308,59 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     instants = None
     if torques and asked.event == "stop":
         with steps.step("instants of the brake"):
-            instants = by_instant(made[run.level], event, torques[-1], run.step)
+            instants = by_instant(made[run.rung.name], event, torques[-1], run.step)
     with steps.step("gears and bearings"):
-        use = asked.parts.of_event(run, word_of(run.level), asked.rated.torque)
+        use = asked.parts.of_event(run, asked.rated.torque)
     return _result(
         asked, found, steps, runs, number, run.extremes, run.samples, {}, {}, instants, use
     )
 
 
+def _at_rung(
+    machine: Machine,
+    rated: Rated,
+    event: Event,
+    duration: float,
+    rung: Rung,
+    counted: CountedParts,
+) -> tuple[Prepared, Callable[[float | None], LevelRun]]:
+    """A drivetrain at a level, and its event there with a step; that which it needs for None."""
+    of = Prepared(machine, rung, rated, event.teeth, parts=counted)
+    planned = event.plan(of.of, duration, rated.slip)
+    return of, lambda step: of.event(planned, event.step(of.of) if step is None else step)
+
+
+def event_at(
+    drivetrain: Drivetrain, event: str, rung: Rung, counted: CountedParts = NO_PARTS
+) -> LevelRun:
+    """An event of a drivetrain at one level, with all defaults, and the bands of its step.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    event : str
+        Name of an event, not of operation.
+    rung : Rung
+        The level, at which the event can happen.
+    counted : CountedParts
+        Bearings whose damage is counted.
+
+    Raises
+    ------
+    InputError
+        See `transient`.
+    """
+    machine, rated = machine_of(drivetrain), rated_of(drivetrain)
+    happens = event_of(event, _of_file(drivetrain, event))
+    duration = happens.lasts(rated.running(machine, RUNGS[0]))
+    _, run = _at_rung(machine, rated, happens, duration, rung, counted)
+    return with_bands(run(None), run)
+
+
 def _duration(asked: _Asked, event: Event) -> float:
     if asked.duration is None:
-        return event.lasts(asked.rated.running(asked.machine, Level.TORSIONAL))
+        return event.lasts(asked.rated.running(asked.machine, RUNGS[0]))
     longest = 3600.0
     if not 0.0 < asked.duration <= longest:
         raise InputError(
@@ -311,8 +372,8 @@ def _duration(asked: _Asked, event: Event) -> float:
 
 def _compared(
     asked: _Asked,
-    levels: Sequence[Level],
-    at: Callable[[Level], Callable[[float | None], LevelRun]],
+    levels: Sequence[Rung],
+    at: Callable[[Rung], Callable[[float | None], LevelRun]],
     step: float | None,
     steps: Steps,
 ) -> tuple[list[LevelRun], int]:
@@ -324,10 +385,14 @@ def _compared(
     with steps.step("compiled loops"):
         _load_loops()
     runs, again = [], []
-    for level in levels:
-        with steps.step(level.value):
-            again.append(at(level))
-            runs.append(again[-1](step))
+    names = [rung.name for rung in asked.rungs.rungs]
+    for rung in levels:
+        before = asked.rungs.rungs[: names.index(rung.name) + 1]
+        condensed = sum(one.seconds for one in before)
+        with steps.step(rung.name):
+            again.append(at(rung))
+            run = again[-1](step)
+            runs.append(replace(run, seconds=run.seconds + condensed))
     number = cheapest_level(runs, asked.quantity, asked.tolerance)
     for k in sorted({number, len(runs) - 1}):
         with steps.step("longer steps"):
@@ -357,24 +422,24 @@ def _operated(
     first = read_drive(files[0], options.names, options.skip)
     window = min(options.until or WINDOW, WINDOW, first.seconds)
 
-    def at(level: Level) -> Callable[[float | None], LevelRun]:
+    def at(rung: Rung) -> Callable[[float | None], LevelRun]:
         counted = asked.parts.counted
-        of = Prepared(asked.machine, level, asked.rated, hub_loads=first.has_all, parts=counted)
+        of = Prepared(asked.machine, rung, asked.rated, hub_loads=first.has_all, parts=counted)
         moving = operation(of.of, first, asked.rated.slip)
         return lambda step: of.window(moving, options.step if step is None else step, window)
 
     found = _findings(asked)
     runs, number = _compared(asked, asked.levels(list(Level)), at, options.step, steps)
-    level = runs[number].level
+    rung = runs[number].rung
     names = [short_name(path, files) for path in files]
     with steps.step("files"):
         counted = asked.parts.counted
-        of = Prepared(asked.machine, level, asked.rated, hub_loads=first.has_all, parts=counted)
+        of = Prepared(asked.machine, rung, asked.rated, hub_loads=first.has_all, parts=counted)
         begun, samples = driven(of, first, options)
         rest = digests(
             files[1:],
             asked.machine,
-            level,
+            rung,
             asked.rated,
             options,
             resume,
@@ -392,9 +457,7 @@ def _operated(
     found.data("duration_spectra", spectrum_rows(of_files, extremes))
     found.data("files", digest_rows(of_files, extremes))
     with steps.step("gears and bearings"):
-        use = asked.parts.of_operation(
-            of_files, files, runs[number], word_of(level), asked.rated.torque
-        )
+        use = asked.parts.of_operation(of_files, files, runs[number], asked.rated.torque)
     if use is not None and (use.gears or use.bearings):
         found.data("file_damage", history_damage_rows(use, names))
     return _result(asked, found, steps, runs, number, extremes, samples, of_files, more, None, use)
@@ -437,18 +500,19 @@ def _result(
     if instants is not None:
         found.data("instants", instant_rows(instants))
     judge_run(found, asked.event, run, imbalance, asked.rated)
-    state_assumptions(found, asked.event, asked.values, asked.drivetrain)
+    state_assumptions(found, asked.event, asked.values, asked.drivetrain, run.rung)
+    state_bounds(found, runs, asked.rungs.left_out)
     state_figures(found, extremes, run)
     limits = torque_limits(asked.drivetrain, extremes)
     note_limits(found, limits, extremes)
     beside = Beside(instants, use, limits)
     state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity, beside)
-    word = word_of(run.level)
+    found.note(housings_in_words(run.rung, asked.machine))
     if use is not None:
-        state_parts(found, use, asked.parts, word)
+        state_parts(found, use, asked.parts, run.rung.level)
     return TransientResult(
         event=asked.event,
-        level=word,
+        level=run.word,
         runs=tuple(runs),
         errors=errors,
         quantity=asked.quantity,

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.arrays import rounded
+from fe_drivetrain.dynamics.bodies.condensed_rungs import SOFT_SEATS, STIFF_SEATS
 from fe_drivetrain.report.charts import bars, chart, error_bars
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
@@ -17,7 +18,7 @@ from fe_drivetrain.studies.gear_answers import GearAnswer, LevelAnswer, MeshAnsw
 from fe_drivetrain.studies.gear_machine import GearTrain
 from fe_drivetrain.studies.gear_options import HOURS
 from fe_drivetrain.studies.gear_stresses import SHARING
-from fe_drivetrain.studies.machine_description import ON_THE_GROUND
+from fe_drivetrain.studies.machine_description import assume_housings, housings_in_words
 
 UNREAD = (
     "ISO 6336, ISO 1328 and IEC 61400-4 were not read: equations agree with printed KISSsoft "
@@ -119,6 +120,7 @@ def state_findings(
     found.data("ring", list(_ring_rows(gears, meshes)))
     if result["spectrum"] is not None:
         found.data("spectrum", list(_spectrum_rows(result["spectrum"])))
+    _bounds(found, train, result)
     _checks(found, train, meshes)
     _cautions(found, train, left_out, result)
     _assumptions(found, train, result)
@@ -253,6 +255,33 @@ def _spectrum_rows(spectrum: Any) -> Iterator[Record]:
         yield {"torque [kN m]": torque / 1e3, "time [h]": seconds / 3600.0, "turns": turns}
 
 
+def _bounds(found: Findings, train: GearTrain, result: Mapping[str, Any]) -> None:
+    """State what both bounds of the main bearings' housings do to the factors of all meshes."""
+    levels = {one.name: one.factors for one in result["levels"]}
+    if SOFT_SEATS in levels:
+        soft, stiff = levels[SOFT_SEATS], levels[STIFF_SEATS]
+        rows: list[Record] = [
+            {
+                "mesh": name,
+                "K_gamma, seats averaged": soft[name][0],
+                "K_gamma, seats rigid": stiff[name][0],
+                "K_Hbeta, seats averaged": soft[name][1],
+                "K_Hbeta, seats rigid": stiff[name][1],
+            }
+            for name in soft
+        ]
+        found.data("bounds", rows)
+        most = max(soft, key=lambda name: abs(soft[name][1] - stiff[name][1]))
+        found.say(
+            f"Between both bounds of the main bearings' housings K_Hbeta of {most} is "
+            f"{soft[most][1]:.4g} with averaged seats and {stiff[most][1]:.4g} with rigid ones; no "
+            "other mesh differs by more."
+        )
+    if train.left_out:
+        rows = [{"level or part": name, "because": why} for name, why in train.left_out.items()]
+        found.data("levels left out", rows)
+
+
 def _checks(found: Findings, train: GearTrain, meshes: Mapping[str, MeshAnswer]) -> None:
     """Forces of the meshes by statics against those of the torque alone."""
     apart = [abs(mesh.balance - 1.0) for mesh in meshes.values() if not np.isnan(mesh.balance)]
@@ -302,11 +331,8 @@ def _cautions(
         )
     if result["level"] != "torsional":
         found.note("Flanks have no modification along the face: lead corrections are not modelled.")
-        found.note(
-            "Housings are rigid and stand on the ground: on a soft mount planets and faces share "
-            "otherwise."
-        )
-        found.assume(*ON_THE_GROUND)
+    found.note(housings_in_words(train.rung, train.machine))
+    assume_housings(found, train.rung.assumes)
     if result["varies"] and (result["spectrum"].torques < 0.0).any():
         found.note(
             "Negative torques load the other flanks, and are spread over planets and face as those "

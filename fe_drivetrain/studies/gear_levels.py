@@ -10,9 +10,10 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
-from fe_drivetrain.dynamics.bodies.flexible import Flexible
+from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.mesh_loads import MeshResponses, mesh_springs
+from fe_drivetrain.dynamics.bodies.rolling_meshes import RollingMeshes
 from fe_drivetrain.studies.gear_stresses import SHARING, MeshStresses, spread_at_ends
 
 LEAST = 0.01
@@ -74,8 +75,8 @@ class LoadSpread:
         The machine.
     stresses : mapping of str to MeshStresses
         Meshes that are rated, by name.
-    level : Level
-        Torsional: planets and face share by formula; else by statics.
+    rung : Rung
+        Level, and what gives. Torsional: planets and face share by formula; else by statics.
     count : int
         Number of azimuths.
     slices : int
@@ -84,26 +85,26 @@ class LoadSpread:
         Whether the rotor has its weight.
     reference : float
         Reference torque of the rotor [N m].
-    flexible : Flexible or None
-        What gives beside meshes, bearings and shafts; None for nothing.
     """
 
     def __init__(
         self,
         machine: MachineTable,
         stresses: Mapping[str, MeshStresses],
-        level: Level,
+        rung: Rung,
         count: int,
         slices: int,
         weight: bool,
         reference: float,
-        flexible: Flexible | None = None,
     ) -> None:
         self._stresses, self._least = stresses, LEAST * abs(reference)
         self._planets = {name: len(springs) for name, springs in mesh_springs(machine).items()}
-        self._responses = None
-        if level is not Level.TORSIONAL:
-            self._responses = MeshResponses(machine, level, count, slices, weight, flexible)
+        self._responses: MeshResponses | RollingMeshes | None = None
+        level, gives = rung.level, rung.flexible
+        if rung.rollers:
+            self._responses = RollingMeshes(machine, rung, count, slices, weight)
+        elif level is not Level.TORSIONAL:
+            self._responses = MeshResponses(machine, level, count, slices, weight, gives)
 
     def under(self, torque: float, hub: Floats) -> dict[str, Spread]:
         """Spread of all meshes under a torque of the rotor [N m] and other loads of the hub.

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
@@ -11,12 +13,14 @@ from fe_drivetrain.drivetrain_file.entrance import Entrance
 from fe_drivetrain.drivetrain_file.gear_strength import GearStrength
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
+from fe_drivetrain.dynamics.bodies.advice import Rung
+from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs, plain_rungs, with_rollers
 from fe_drivetrain.dynamics.bodies.machine import machine_of
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_stresses import Conditions
-from fe_drivetrain.studies.mode_levels import named_level, plain_rungs
+from fe_drivetrain.studies.mode_levels import WORDS, named_rung
 
+NOTHING: Mapping[str, str] = MappingProxyType({})
 RPM = 0.10471975511965977
 
 
@@ -28,10 +32,12 @@ class GearTrain:
     ----------
     machine : MachineTable
         Bodies, shafts and stages.
-    levels : tuple of Level
+    rungs : tuple of Rung
         Levels that its data allow, from the simplest to the finest.
-    level : Level
-        Level of the rating.
+    rung : Rung
+        Level of the rating, one of them.
+    left_out : Mapping of str to str
+        Levels and parts that the ladder does not have, and why.
     strengths : dict of int to GearStrength
         Strength of stages by their number, from 1.
     conditions : Conditions
@@ -47,8 +53,9 @@ class GearTrain:
     """
 
     machine: MachineTable
-    levels: tuple[Level, ...]
-    level: Level
+    rungs: tuple[Rung, ...]
+    rung: Rung
+    left_out: Mapping[str, str]
     strengths: dict[int, GearStrength]
     conditions: Conditions
     torque: float
@@ -57,7 +64,12 @@ class GearTrain:
     missing: tuple[str, ...]
 
 
-def gear_train(drivetrain: Drivetrain, options: GearOptions, torque: float | None) -> GearTrain:
+def gear_train(
+    drivetrain: Drivetrain,
+    options: GearOptions,
+    torque: float | None,
+    condensed: Rungs | None = None,
+) -> GearTrain:
     """What a rating needs of a drivetrain.
 
     Parameters
@@ -68,6 +80,8 @@ def gear_train(drivetrain: Drivetrain, options: GearOptions, torque: float | Non
         What is given beside the file.
     torque : float or None
         Torque of the rotor [N m]; None takes that of the file's rated power.
+    condensed : Rungs or None
+        Ladder with what is condensed, once that is done; None for the levels without it.
 
     Raises
     ------
@@ -107,14 +121,17 @@ def gear_train(drivetrain: Drivetrain, options: GearOptions, torque: float | Non
     where = drivetrain.entrance if isinstance(drivetrain, Scene) else None
     missing = ["operation.rotor_speed"] if speed is None else []
     missing += ["operation.lubricant"] if oil is None else []
-    level = named_level(options.level, machine)
-    if level is not Level.TORSIONAL:
-        machine_system(machine, level, held_generator=True)  # refuses what its data do not allow
-    levels = tuple(rung.level for rung in plain_rungs(machine))
+    ladder = Rungs(plain_rungs(drivetrain, machine), NOTHING) if condensed is None else condensed
+    ladder = with_rollers(ladder, machine) if options.rollers else ladder
+    rungs, left_out = ladder.rungs, ladder.left_out
+    # the name of a condensed level is known once that is made
+    waits = condensed is None and options.condensed and options.level not in WORDS
+    rung = named_rung(None if waits else options.level, rungs, machine)
     return GearTrain(
         machine,
-        levels,
-        level,
+        rungs,
+        rung,
+        left_out,
         strengths,
         Conditions(speed, oil),
         torque,

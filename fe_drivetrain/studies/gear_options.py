@@ -21,8 +21,14 @@ class GearOptions(HistoryOptions):
         How files are read, see `HistoryOptions`; the rotor speed is that of the rating, too, where
         the drivetrain states none.
     level : str or None
-        Level by which gears are rated, "torsional", "rigid" or "flexible"; None takes the finest
-        that the file's data allow.
+        Level by which gears are rated, "torsional", "rigid" or "flexible", or the name of a
+        condensed one; None takes the finest.
+    condensed : bool
+        Whether levels go on with what has to be condensed, see `fe_drivetrain.dynamics.rungs_of`:
+        housings of main bearings at both bounds, carriers, the main shaft in its meridian.
+    rollers : bool
+        Whether the last level has bearings with a catalogue entry on their rollers, with their
+        clearance: an equilibrium for each azimuth and torque.
     tolerance : float
         Relative difference in contact stress within which a cheaper level is enough.
     azimuths : int
@@ -43,6 +49,8 @@ class GearOptions(HistoryOptions):
     """
 
     level: str | None = None
+    condensed: bool = False
+    rollers: bool = False
     tolerance: float = 0.05
     azimuths: int = 24
     slices: int = 9

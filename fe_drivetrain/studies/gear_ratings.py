@@ -10,6 +10,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.dynamics.bodies.condensed_rungs import rungs_of
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gear_answers import GearAnswer, LevelAnswer, MeshAnswer
@@ -130,12 +131,14 @@ def gears(
     found.seed = None
     found.about(drivetrain)
     train, meshes, left_out = prepared(drivetrain, torque, asked, loading)
+    if asked.condensed:
+        train = gear_train(drivetrain, asked, torque, rungs_of(drivetrain, steps=steps))
     stresses = {name: MeshStresses(mesh, train.conditions) for name, mesh in meshes.items()}
     with steps.step("torque spectrum"):
         given = loads_of(train, asked, loading, report)
     made = GearRating(train, asked, stresses, given, steps)
-    levels, by_level = made.ladder()
-    mesh_answers = made.mesh_answers(by_level[train.level])
+    levels, spreads = made.ladder()
+    mesh_answers = made.mesh_answers(spreads)
     damage = made.damage()
     answers = made.gear_answers(mesh_answers, damage)
     enough = next(one.name for one in levels if one.difference <= asked.tolerance)
@@ -148,7 +151,7 @@ def gears(
         "hub": given.hub,
         "spectrum": given.spectrum,
         "hours": given.hours,
-        "level": train.level.value,
+        "level": train.rung.name,
         "asked": asked,
         "site": site,
         "varies": given.varies,

@@ -20,15 +20,14 @@ from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.drivetrain_file.joint_springs import as_numbers
 from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.dynamics.bodies.advice import RUNGS, Rung
 from fe_drivetrain.dynamics.bodies.bearing_reactions import (
     BearingModel,
     Reactions,
     planet_bearing_name,
 )
-from fe_drivetrain.dynamics.bodies.flexible import Flexible
-from fe_drivetrain.dynamics.bodies.gearbox_mount import on_mount
+from fe_drivetrain.dynamics.bodies.gearbox_mount import stated_mount
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
 from fe_drivetrain.studies.rolling_bearings import (
@@ -71,8 +70,8 @@ class MachineBearings:
     lacks : str or None
         Why there is no machine, of a drivetrain with gears whose main bearings are rated all the
         same, as a sentence.
-    mounted : bool
-        Whether the gearbox's housing stands on the springs of its mount, not on the ground.
+    assumes : tuple of str
+        What the finest level assumes of housings, see `Rung`.
     rated : tuple of OneBearing
         Those with an entry of a catalogue, ready for lives: main bearings first.
     unrated : tuple of Unrated
@@ -85,7 +84,7 @@ class MachineBearings:
     unrated: tuple[Unrated, ...] = ()
     degrees: Mapping[str, int] = field(default_factory=dict)
     lacks: str | None = None
-    mounted: bool = False
+    assumes: tuple[str, ...] = ()
 
 
 def machine_bearings(
@@ -94,7 +93,7 @@ def machine_bearings(
     choices: Choices,
     oil: Oil,
     on_rollers: Sequence[str] = (),
-    flexible: Flexible | None = None,
+    finest: Rung = RUNGS[-1],
 ) -> MachineBearings:
     """The bearings of a machine by the loads that its statics give them.
 
@@ -110,8 +109,9 @@ def machine_bearings(
         The oil of the gearbox.
     on_rollers : sequence of str
         Bearings that are rated elsewhere, with their rollers in equilibrium with the shaft.
-    flexible : Flexible, optional
-        The gearbox's housing on its mount, see `gearbox_mount`; rigid on the ground where left out.
+    finest : Rung
+        The finest of `plain_rungs`, with what gives at both levels; housings rigid on the ground
+        where left out.
 
     Returns
     -------
@@ -123,7 +123,7 @@ def machine_bearings(
     InputError
         An entry is unknown or of no bearing, or the machine has no statics.
     """
-    models = {level: BearingModel(machine, level, flexible=flexible) for level in LEVELS}
+    models = {level: BearingModel(machine, level, flexible=finest.flexible) for level in LEVELS}
     loads = {level: model.reactions() for level, model in models.items()}
     main = main_names(machine)
     names = [n for n in models[LEVELS[-1]].names if n not in on_rollers]
@@ -142,7 +142,7 @@ def machine_bearings(
             made = _Maker(name, entries[name], entry, choices)
             rated.append(made.bearing(models[LEVELS[-1]], here, None if name in main else oil))
     degrees = {level.value: model.degrees for level, model in models.items()}
-    return MachineBearings(tuple(rated), tuple(unrated), degrees, mounted=flexible is not None)
+    return MachineBearings(tuple(rated), tuple(unrated), degrees, assumes=finest.assumes)
 
 
 def catalogue_entries(drivetrain: Drivetrain) -> dict[str, str]:
@@ -180,31 +180,12 @@ def machine_with_bearings(drivetrain: Drivetrain) -> Machine | str | None:
         return None
     try:
         machine = machine_of(drivetrain)
-        BearingModel(machine, LEVELS[0], 1, gearbox_mount(drivetrain, machine))
+        BearingModel(machine, LEVELS[0], 1, stated_mount(drivetrain, machine))
     except InputError as error:
         if isinstance(drivetrain, Scene):
             return str(error)
         raise
     return machine
-
-
-def gearbox_mount(drivetrain: Drivetrain, machine: Machine) -> Flexible | None:
-    """The gearbox's housing on the springs that a file gives its mount; None where it has none.
-
-    See `fe_drivetrain.dynamics.on_mount`.
-
-    Parameters
-    ----------
-    drivetrain : Drivetrain
-        The drivetrain.
-    machine : Machine
-        Its machine, which begins at the front face of the main shaft.
-    """
-    if not isinstance(drivetrain, Scene):
-        return None
-    if not as_numbers(drivetrain.gearbox.stiffness).any():
-        return None
-    return on_mount(drivetrain, machine)
 
 
 def main_names(machine: Machine) -> tuple[str, ...]:

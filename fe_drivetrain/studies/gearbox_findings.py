@@ -9,6 +9,7 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gearbox_bearings import MachineBearings
 from fe_drivetrain.studies.life_sums import BearingLife
 from fe_drivetrain.studies.life_tables import ENOUGH, enough
+from fe_drivetrain.studies.machine_description import assume_housings
 
 FLANGED = 0.01
 """Axial force on flanges over the largest load of the rollers from which on it is spoken of."""
@@ -89,11 +90,7 @@ def assume_reactions(
         "",
         f"no accelerations and no clearance; of {names}",
     )
-    stands, source = "rigid, and held by the ground", "the file states no mount"
-    if machine.mounted:
-        stands = "rigid, on the springs of gearbox.stiffness"
-        source = "with the gearbox's weight less its stages'; main bearings stand beside it"
-    found.assume("gearbox housing", stands, "", source)
+    assume_housings(found, machine.assumes)
     found.assume("rings of gearbox bearings", "rigid", "", "no housing gives way")
     for life in asked:
         if life.bearing.planets:

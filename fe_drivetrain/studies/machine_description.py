@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import prod
 
@@ -10,23 +10,56 @@ from fe_drivetrain.common.typeset import with_prefix
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
 from fe_drivetrain.drivetrain_file.left_out import LeftOut
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.stage_completion import NotGivenError
 from fe_drivetrain.drivetrain_file.turning_parts import ShaftData, SixOrMatrix, diagonal
+from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system, torsional
 from fe_drivetrain.dynamics.bodies.machine import Machine, derived_values, machine_of
 from fe_drivetrain.dynamics.torsion.gear_table import GRID
 from fe_drivetrain.dynamics.torsion.system import natural_modes
+from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.scene_description import springs_in_words
 
-ON_THE_GROUND = (
-    "housings of main bearings and gearbox",
-    "rigid, on the ground",
-    "",
-    "assumed: housings and mounts that give change frequencies and loads; the adviser has them as "
-    "levels, lives have the gearbox on its mount",
-)
-"""What is assumed of housings where a model has none, as a row of assumptions."""
+
+def assume_housings(found: Findings, assumes: Iterable[str]) -> None:
+    """State what a level assumes of housings and what gives, as rows of assumptions.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes the rows.
+    assumes : iterable of str
+        As "name: what is assumed", see `Rung`.
+    """
+    for what in assumes:
+        name, _, stands = what.partition(": ")
+        value, since, why = stands.partition(", since ")
+        found.assume(name, value, "", f"assumed{since}{why}")
+
+
+def housings_in_words(rung: Rung, machine: MachineTable) -> str:
+    """What the housings of a drivetrain do at a level, as a sentence.
+
+    Parameters
+    ----------
+    rung : Rung
+        The level, and what gives.
+    machine : MachineTable
+        The drivetrain's machine.
+    """
+    if rung.level is Level.TORSIONAL:
+        return "Bodies only turn at the torsional level: neither mount nor housings act there."
+    gives = rung.flexible
+    mains = "give way" if gives.bearings else "are rigid and stand on the ground"
+    if not machine.stages:
+        return f"Housings of main bearings {mains}."
+    stands = "on its mount" if gives.housing is not None else "on the ground"
+    return (
+        f"The gearbox's housing is rigid in itself and stands {stands}; housings of main bearings "
+        f"{mains}."
+    )
 
 
 @dataclass(frozen=True)

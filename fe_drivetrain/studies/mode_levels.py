@@ -10,9 +10,9 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.comparison import grid_convergence
 from fe_drivetrain.dynamics import (
-    RUNGS,
     Answer,
     Asked,
+    Flexible,
     Level,
     Machine,
     Operation,
@@ -33,6 +33,8 @@ COMPARED = 6
 """Number of modes that the levels are compared by."""
 ROUND_OFF = 1e-9
 """Relative, of frequencies that no number of elements changes."""
+WORDS = {level.name.lower(): level for level in Level}
+"""Levels by the word that asks for them."""
 BANDED = 40
 """Number of modes of the finest level that those of a simpler one are looked for among."""
 
@@ -52,21 +54,43 @@ def named_level(level: str | None, machine: Machine) -> Level:
     InputError
         There is no level of that name.
     """
-    known = {one.name.lower(): one for one in Level}
     if level is None:
-        return plain_rungs(machine)[-1].level
-    if level not in known:
-        raise InputError(f"no level {level!r}: use one of {', '.join(known)}")
-    return known[level]
+        return Level.TORSIONAL if machine.not_given else Level.FLEXIBLE
+    if level not in WORDS:
+        raise InputError(f"no level {level!r}: use one of {', '.join(WORDS)}")
+    return WORDS[level]
 
 
-def plain_rungs(machine: Machine) -> tuple[Rung, ...]:
-    """Levels that the data of a machine allow, from the simplest."""
-    return RUNGS[:1] if machine.not_given else RUNGS
+def named_rung(name: str | None, rungs: Sequence[Rung], machine: Machine) -> Rung:
+    """The rung that was asked for, or the finest.
+
+    Parameters
+    ----------
+    name : str or None
+        "torsional", "rigid", "flexible", or the name of a rung; None for the finest.
+    rungs : sequence of Rung
+        Rungs from the simplest to the finest, as those of `plain_rungs` or `rungs_of`.
+    machine : Machine
+        Their machine.
+
+    Raises
+    ------
+    InputError
+        There is none of that name, or the machine lacks data for it.
+    """
+    if name is None:
+        return rungs[-1]
+    if name in WORDS:
+        machine_system(machine, WORDS[name], held_generator=True)  # refuses what lacks data
+        return next(rung for rung in rungs if rung.level is WORDS[name])
+    condensed = {rung.name: rung for rung in rungs[len(WORDS) :]}
+    if name not in condensed:
+        raise InputError(f"no level {name!r}: use one of {', '.join((*WORDS, *condensed))}")
+    return condensed[name]
 
 
 def compared_levels(
-    machine: Machine, held: bool, tolerance: float, rungs: Sequence[Rung] | None = None
+    machine: Machine, held: bool, tolerance: float, rungs: Sequence[Rung]
 ) -> tuple[list[Answer], dict[str, str]]:
     """Frequencies of some modes of the finest level at every level, with their times.
 
@@ -78,9 +102,8 @@ def compared_levels(
         Whether the generator is held.
     tolerance : float
         Relative error that a simpler level may have.
-    rungs : sequence of Rung, optional
-        Levels from the simplest, as with what is condensed; those of bodies and beam shafts where
-        left out.
+    rungs : sequence of Rung
+        Levels from the simplest, as those of `plain_rungs`, or with what is condensed.
 
     Returns
     -------
@@ -90,7 +113,7 @@ def compared_levels(
     enough : dict of str to str
         Simplest level that is within the tolerance, by the same names.
     """
-    rungs, load = rungs or plain_rungs(machine), Operation(0.0)
+    load = Operation(0.0)
     finest = Asked(machine, rungs[-1], load, held)
     # solved before the clocks start, so that no level pays for the finest
     kinds = [
@@ -111,7 +134,9 @@ def compared_levels(
     return answers, {name: needed_level(answers, name, tolerance) for name in questions}
 
 
-def frequency_bands(machine: Machine, level: Level, held: bool, count: int) -> Floats:
+def frequency_bands(
+    machine: Machine, rungs: Sequence[Rung], rung: Rung, held: bool, count: int
+) -> Floats:
     """(count,) half widths of the numerical uncertainty of frequencies at a level [Hz].
 
     Of flexible shafts by their number of elements, of a simpler level by the distance to that
@@ -121,21 +146,26 @@ def frequency_bands(machine: Machine, level: Level, held: bool, count: int) -> F
     ----------
     machine : Machine
         Machine whose modes are asked for.
-    level : Level
-        Level of the frequencies.
+    rungs : sequence of Rung
+        Those of `plain_rungs`.
+    rung : Rung
+        Level of the frequencies, one of them.
     held : bool
         Whether the generator is held.
     count : int
         Number of frequencies.
     """
-    if plain_rungs(machine)[-1].level is not Level.FLEXIBLE:
+    if rungs[-1].level is not Level.FLEXIBLE:
         return np.full(count, np.nan)
-    if level is Level.FLEXIBLE:
-        return element_bands(machine, held, count)
-    return level_bands(machine, level, held, count, element_bands(machine, held, BANDED))
+    if rung.level is Level.FLEXIBLE:
+        return element_bands(machine, held, count, rung.flexible)
+    finest = element_bands(machine, held, BANDED, rungs[-1].flexible)
+    return level_bands(machine, (rung, rungs[-1]), held, count, finest)
 
 
-def element_bands(machine: Machine, held: bool, count: int) -> Floats:
+def element_bands(
+    machine: Machine, held: bool, count: int, flexible: Flexible | None = None
+) -> Floats:
     """(count,) half widths of what the number of elements of the shafts leaves open [Hz].
 
     Of the first modes with a frequency, with flexible shafts; by the k-th frequency of three
@@ -149,10 +179,12 @@ def element_bands(machine: Machine, held: bool, count: int) -> Floats:
         Whether the generator is held.
     count : int
         Number of modes.
+    flexible : Flexible or None
+        What gives beside the shafts.
     """
     series = []
     for elements in ELEMENTS:
-        system = machine_system(machine, Level.FLEXIBLE, 0.0, elements, held)
+        system = machine_system(machine, Level.FLEXIBLE, 0.0, elements, held, flexible)
         frequencies = system_modes(system).frequencies
         series.append(frequencies[frequencies > 0.0][:count])
     sizes = [1.0 / elements for elements in ELEMENTS]
@@ -168,7 +200,7 @@ def element_bands(machine: Machine, held: bool, count: int) -> Floats:
 
 
 def level_bands(
-    machine: Machine, level: Level, held: bool, count: int, finest_bands: Floats
+    machine: Machine, rungs: tuple[Rung, Rung], held: bool, count: int, finest_bands: Floats
 ) -> Floats:
     """(count,) half widths of frequencies of a simpler level: distance to the finest level's [Hz].
 
@@ -176,8 +208,8 @@ def level_bands(
     ----------
     machine : Machine
         Machine with a rotor that has a mass.
-    level : Level
-        Level of the frequencies.
+    rungs : tuple of Rung
+        Level of the frequencies, and the finest.
     held : bool
         Whether the generator is held.
     count : int
@@ -191,8 +223,7 @@ def level_bands(
         NaN of modes that are those of none of the first m of the finest level.
     """
     load, found = Operation(0.0), np.full(count, np.nan)
-    own = Asked(machine, Rung(level, RUNGS[0].flexible, level.value), load, held)
-    finest = Asked(machine, RUNGS[-1], load, held)
+    own, finest = (Asked(machine, rung, load, held) for rung in rungs)
     frequencies = own.modes.frequencies[own.modes.frequencies > 0.0]
     best = finest.modes.frequencies[finest.modes.frequencies > 0.0]
     for k, band in enumerate(finest_bands[: len(best)]):

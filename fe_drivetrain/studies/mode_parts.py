@@ -12,6 +12,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics import Machine, System, SystemModes, direction_kinds
+from fe_drivetrain.dynamics.bodies.flexible import MOUNT
 
 _MOTION_WORDS = {
     "torsional": "turning of",
@@ -19,6 +20,7 @@ _MOTION_WORDS = {
     "lateral": "lateral motion of",
     "mixed": "motion of",
 }
+_HOUSING = "gearbox housing"
 _MOST = 0.6  # of the kinetic energy: parts that have it together are named
 
 
@@ -138,7 +140,7 @@ def mode_in_words(
 
 def named(part: str) -> str:
     """A part in a sentence: with its article where it is the only one of its kind."""
-    return f"the {part}" if part in ("rotor", "generator", "grid") else part
+    return f"the {part}" if part in ("rotor", "generator", "grid", MOUNT, _HOUSING) else part
 
 
 def _by_part(names: Iterable[str], shares: Floats) -> dict[str, Floats]:
@@ -153,6 +155,8 @@ def _of_body(name: str, shafts: set[str]) -> str:
     shaft, node, _ = name.rpartition(" node ")
     if node and shaft in shafts:
         return _shaft(shaft)
+    if name == "housing":
+        return _HOUSING
     return re.sub(r"^(stage \d+ planet) \d+$", r"\1s", name)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.studies.gear_machine import gear_train
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.part_gears import FlankUse, GearUses
@@ -145,8 +146,8 @@ class PartRating:
     ----------
     drivetrain : Drivetrain
         The drivetrain.
-    level : str
-        Level by which meshes spread their load.
+    rung : Rung
+        Level by which meshes spread their load, and what gives.
     torque : float
         Rated torque of the rotor [N m].
     parts : CountedParts
@@ -154,12 +155,12 @@ class PartRating:
     """
 
     def __init__(
-        self, drivetrain: Drivetrain, level: str, torque: float, parts: CountedParts
+        self, drivetrain: Drivetrain, rung: Rung, torque: float, parts: CountedParts
     ) -> None:
         self.parts = parts
         gears = drivetrain.gearbox.stages
         self.gears = (
-            GearUses(gear_train(drivetrain, GearOptions(level=level), torque)) if gears else None
+            GearUses(gear_train(drivetrain, GearOptions(), torque), rung) if gears else None
         )
 
     def use(

@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.gear.damage import ToothDamage
 from fe_drivetrain.studies.gear_levels import LoadSpread, Spread
 from fe_drivetrain.studies.gear_machine import GearTrain
@@ -66,7 +67,9 @@ class GearUses:
     Parameters
     ----------
     train : GearTrain
-        The machine, and the level by which meshes spread their load.
+        The machine.
+    rung : Rung
+        Level by which meshes spread their load, and what gives.
 
     Attributes
     ----------
@@ -74,8 +77,8 @@ class GearUses:
         What is not rated and why, as sentences.
     """
 
-    def __init__(self, train: GearTrain) -> None:
-        self._train = train
+    def __init__(self, train: GearTrain, rung: Rung) -> None:
+        self._train, self._rung = train, rung
         meshes, lacking = gear_meshes(train.machine, train.strengths)
         made = {name: MeshStresses(one, train.conditions) for name, one in meshes.items()}
         self._rated = {name: one for name, one in made.items() if one.rated}
@@ -128,7 +131,7 @@ class GearUses:
         loads = LoadSpread(
             train.machine,
             self._rated,
-            train.level,
+            self._rung,
             GearOptions.azimuths,
             slices,
             alone,  # hub loads of files hold the weight of the rotor already

@@ -114,7 +114,7 @@ def _quantity(
         found = one(model)
         return float("nan") if found is None else band(found)
 
-    return TurningQuantity(name, "-", of, own, condensed=False)
+    return TurningQuantity(name, "-", of, own)
 
 
 def _life(name: str, kind: str) -> TurningQuantity:

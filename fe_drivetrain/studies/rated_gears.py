@@ -10,8 +10,7 @@ import numpy as np
 
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.dynamics.bodies.advice import Rung
-from fe_drivetrain.dynamics.bodies.flexible import Flexible
-from fe_drivetrain.dynamics.bodies.levels import Level
+from fe_drivetrain.dynamics.bodies.condensed_rungs import SOFT_SEATS, STIFF_SEATS
 from fe_drivetrain.gear.load_factors import LoadFactors
 from fe_drivetrain.studies.gear_answers import (
     GearAnswer,
@@ -55,56 +54,67 @@ class GearRating:
     ) -> None:
         self.train, self.asked, self.stresses = train, asked, stresses
         self.given, self.steps = given, steps
-        self.level = train.level
+        self.bounds: tuple[LoadSpread, LoadSpread] | None = None
 
-    def _spread(self, level: Level, slices: int, flexible: Flexible | None = None) -> LoadSpread:
+    def _spread(self, rung: Rung, slices: int) -> LoadSpread:
         return LoadSpread(
             self.train.machine,
             self.stresses,
-            level,
+            rung,
             self.asked.azimuths,
             slices,
             self.given.weight,
             self.train.torque,
-            flexible,
         )
 
     def spread_at(self, rung: Rung) -> dict[str, Spread]:
         """Spread at the reference torque at one rung, at which all that follows is rated."""
         slices = self.asked.slices
-        self.chosen = self._spread(rung.level, slices, rung.flexible)
-        self.coarse = self._spread(rung.level, (slices + 1) // 2, rung.flexible)
+        self.chosen = self._spread(rung, slices)
+        self.coarse = self._spread(rung, (slices + 1) // 2)
         return self.chosen.under(self.train.torque, self.given.hub)
 
-    def ladder(self) -> tuple[tuple[LevelAnswer, ...], dict[Level, dict[str, Spread]]]:
-        """All levels at the reference torque; the finest is what others are compared with."""
-        found: dict[Level, dict[str, Spread]] = {}
-        factors, seconds = {}, {}
+    def ladder(self) -> tuple[tuple[LevelAnswer, ...], dict[str, Spread]]:
+        """All levels at the reference torque, and the spread of the one that is rated.
+
+        The finest is what others are compared with. Where housings of main bearings give way at the
+        level that is rated, both of their bounds count in what follows.
+        """
+        loads: dict[str, LoadSpread] = {}
+        found: dict[str, dict[str, Spread]] = {}
+        seconds, condensed = {}, 0.0
         with self.steps.step("levels"):
-            for level in self.train.levels:
-                start = perf_counter()
-                loads = self._spread(level, self.asked.slices)
-                if level is self.level:
-                    self.chosen = loads
-                found[level] = loads.under(self.train.torque, self.given.hub)
-                seconds[level] = perf_counter() - start
-                factors[level] = {n: (s.sharing, s.face_load) for n, s in found[level].items()}
-            self.coarse = self._spread(self.level, (self.asked.slices + 1) // 2)
-        finest = factors[self.train.levels[-1]]
+            for rung in self.train.rungs:
+                start, condensed = perf_counter(), condensed + rung.seconds
+                loads[rung.name] = self._spread(rung, self.asked.slices)
+                found[rung.name] = loads[rung.name].under(self.train.torque, self.given.hub)
+                seconds[rung.name] = perf_counter() - start + condensed
+            self.coarse = self._spread(self.train.rung, (self.asked.slices + 1) // 2)
+        self.chosen = loads[self.train.rung.name]
+        if self.train.rung.flexible.bearings:
+            self.bounds = loads[SOFT_SEATS], loads[STIFF_SEATS]
+        factors = {
+            rung: {name: (one.sharing, one.face_load) for name, one in of.items()}
+            for rung, of in found.items()
+        }
+        finest = factors[self.train.rungs[-1].name]
         levels = tuple(
-            LevelAnswer(one.value, seconds[one], of, largest_difference(of, finest))
-            for one, of in factors.items()
+            LevelAnswer(name, seconds[name], of, largest_difference(of, finest))
+            for name, of in factors.items()
         )
-        return levels, found
+        return levels, found[self.train.rung.name]
 
     def mesh_answers(self, spreads: Mapping[str, Spread]) -> dict[str, MeshAnswer]:
-        """Each mesh at the reference torque, with bands by fewer azimuths and slices."""
+        """Each mesh at the reference torque, with bands: fewer azimuths and slices, and bounds."""
         torque, found = self.train.torque, {}
         coarse = self.coarse.under(torque, self.given.hub)
+        bounds = [one.under(torque, self.given.hub) for one in self.bounds or ()]
         for name, spread in spreads.items():
-            others = (coarse[name], *spread.halves)
-            sharing = sum(abs(spread.sharing - one.sharing) for one in others)
-            face = sum(abs(spread.face_load - one.face_load) for one in others)
+            pairs = [(spread, one) for one in (coarse[name], *spread.halves)]
+            if bounds:
+                pairs.append((bounds[0][name], bounds[1][name]))
+            sharing = sum(abs(one.sharing - other.sharing) for one, other in pairs)
+            face = sum(abs(one.face_load - other.face_load) for one, other in pairs)
             load = sharing / spread.sharing + face / spread.face_load
             own = self.stresses.get(name)
             start = LoadFactors(1.0, spread.sharing, 1.0, spread.face_load)
@@ -130,7 +140,7 @@ class GearRating:
         return strength.application if rated or not self.given.varies else 1.0
 
     def damage(self) -> dict[str, tuple[FlankDamage, LifeBands]]:
-        """Damage of all flanks with its bands: fewer azimuths, slices and classes of torque."""
+        """Damage of all flanks, with bands: azimuths, slices, classes of torque, and bounds."""
         spectrum = self.given.spectrum
         rated = {name: one for name, one in self.stresses.items() if one.rated}
         if spectrum is None or not rated:
@@ -144,8 +154,13 @@ class GearRating:
             ]
             if self.given.varies:
                 others.append(gear_damage(rated, spectrum.coarser(), self.chosen, application))
+            pairs = [(found, other) for other in others]
+            if self.bounds is not None:
+                low, high = self.bounds
+                soft = gear_damage(rated, spectrum, low, application)
+                pairs.append((soft, gear_damage(rated, spectrum, high, application)))
         return {
-            name: (one, _bands(one, [other[name] for other in others]))
+            name: (one, _bands([(first[name], other[name]) for first, other in pairs]))
             for name, one in found.items()
         }
 
@@ -201,11 +216,11 @@ class GearRating:
         )
 
 
-def _bands(one: FlankDamage, others: Sequence[FlankDamage]) -> LifeBands:
-    """Sums of what coarser models change."""
+def _bands(pairs: Sequence[tuple[FlankDamage, FlankDamage]]) -> LifeBands:
+    """Sums of what pairs of models differ by."""
 
     def moved(value: Callable[[FlankDamage], float]) -> float:
-        return sum(abs(value(other) - value(one)) for other in others)
+        return sum(abs(value(other) - value(one)) for one, other in pairs)
 
     return LifeBands(
         moved(lambda each: each.damage.largest),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.provenance import file_digest, program_hash
-from fe_drivetrain.dynamics.bodies.levels import Level
+from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.time.machine_channels import Channels
 from fe_drivetrain.procedure.drivetrain_operation import EnergyAccount, operation
@@ -271,7 +271,7 @@ def kept_digest(
     _report: Progress,
     file: Path,
     machine: Machine,
-    level: Level,
+    rung: Rung,
     rated: Rated,
     asked: OperationOptions,
     resume: bool,
@@ -287,8 +287,8 @@ def kept_digest(
         The file with the history.
     machine : Machine
         Table of the machine.
-    level : Level
-        What may move.
+    rung : Rung
+        What may move, and what gives.
     rated : Rated
         Rated torque, speed and damping.
     asked : OperationOptions
@@ -303,13 +303,13 @@ def kept_digest(
     InputError
         The file cannot be read.
     """
-    cache, content = user_cache(), _content(file, machine, level, rated, asked, parts)
+    cache, content = user_cache(), _content(file, machine, rung, rated, asked, parts)
     if resume:
         kept = cache.load_record("load-digests", content, FileDigest)
         if kept is not None:
             return kept
     history = read_drive(file, asked.names, asked.skip)
-    prepared = Prepared(machine, level, rated, hub_loads=history.has_all, parts=parts)
+    prepared = Prepared(machine, rung, rated, hub_loads=history.has_all, parts=parts)
     found, _ = driven(prepared, history, asked)
     cache.keep_record("load-digests", content, found)
     return found
@@ -318,7 +318,7 @@ def kept_digest(
 def _content(
     file: Path,
     machine: Machine,
-    level: Level,
+    rung: Rung,
     rated: Rated,
     asked: OperationOptions,
     parts: CountedParts,
@@ -329,7 +329,8 @@ def _content(
         "code": program_hash(),
         "file": file_digest(str(file)),
         "drivetrain": drivetrain_hash(machine),
-        "level": level.value,
+        "level": rung.level.value,
+        "gives": _plain(rung.flexible),
         "rated": rated.plain(),
         "mapping": asked.names.content(),
         "skip": asked.skip,
@@ -340,10 +341,23 @@ def _content(
     }
 
 
+def _plain(value: Any) -> Any:
+    """Records and arrays as plain data."""
+    if is_dataclass(value):
+        return {one.name: _plain(getattr(value, one.name)) for one in fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): _plain(of) for key, of in value.items()}
+    if isinstance(value, (frozenset, set)):
+        return sorted(value)
+    if isinstance(value, (list, tuple)):
+        return [_plain(one) for one in value]
+    return value.tolist() if isinstance(value, np.ndarray) else value
+
+
 def digests(
     files: Sequence[Path],
     machine: Machine,
-    level: Level,
+    rung: Rung,
     rated: Rated,
     asked: OperationOptions,
     resume: bool,
@@ -358,8 +372,8 @@ def digests(
         Histories.
     machine : Machine
         Table of the machine.
-    level : Level
-        What may move.
+    rung : Rung
+        What may move, and what gives.
     rated : Rated
         Rated torque, speed and damping.
     asked : OperationOptions
@@ -371,7 +385,7 @@ def digests(
     parts : CountedParts
         Bearings whose damage is counted.
     """
-    items = ((file, machine, level, rated, asked, resume, parts) for file in files)
+    items = ((file, machine, rung, rated, asked, resume, parts) for file in files)
     made = mapped(kept_digest, items, len(files) if len(files) >= _MANY else 1, report)
     for number in range(1, len(files) + 1):
         report(f"files ({number} of {len(files)})")

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.time.machine_channels import Kind
@@ -16,15 +17,25 @@ from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value, percent_text, value_text
 from fe_drivetrain.report.suite.findings import Findings
-from fe_drivetrain.studies.machine_description import ON_THE_GROUND
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.studies.machine_description import assume_housings
 from fe_drivetrain.studies.part_damage import PartUse
 from fe_drivetrain.studies.torque_limits import BY, hardest_limit, limit_figure
 from fe_drivetrain.studies.transient_digest import FileDigest
 from fe_drivetrain.studies.transient_instants import ByInstant
-from fe_drivetrain.studies.transient_ladder import COUNTED, QUANTITIES, level_error
+from fe_drivetrain.studies.transient_ladder import (
+    COUNTED,
+    QUANTITIES,
+    bounds_of,
+    level_error,
+)
 from fe_drivetrain.studies.transient_parts import part_figures
 from fe_drivetrain.studies.transient_runs import Extreme, LevelRun, Rated
-from fe_drivetrain.studies.transient_tables import alternating_rows, in_shown_unit
+from fe_drivetrain.studies.transient_tables import (
+    alternating_rows,
+    bound_rows,
+    in_shown_unit,
+)
 
 #: Energy that may appear from nowhere: of linear systems, and of teeth that vary or part.
 ENERGY, ENERGY_OF_LAWS = 1e-6, 1e-2
@@ -106,7 +117,11 @@ def _judge_rest(found: Findings, run: LevelRun, before: np.ndarray) -> None:
 
 
 def state_assumptions(
-    found: Findings, event: str, values: Mapping[str, float | str], drivetrain: Drivetrain
+    found: Findings,
+    event: str,
+    values: Mapping[str, float | str],
+    drivetrain: Drivetrain,
+    rung: Rung,
 ) -> None:
     """State the values that nobody gave.
 
@@ -120,6 +135,8 @@ def state_assumptions(
         What was given of it.
     drivetrain : Drivetrain
         Its file, for slip and damping.
+    rung : Rung
+        Level that is reported, with what it assumes of housings.
     """
     kind = EVENTS.get(event)
     for one in () if kind is None else fields(kind):  # type: ignore[arg-type]
@@ -129,13 +146,46 @@ def state_assumptions(
             found.assume(f"{one.name} of the event", value, unit, "assumed: not stated")
     if drivetrain.damping is None:
         source = "assumed: Al-Hamadani 2018, section 4.1"
-        found.assume("damping ratio of shafts and bearings", ASSUMED_RATIOS.shafts, "-", source)
+        what = "damping ratio of shafts and bearings"
+        what += "" if rung.flexible.housing is None else ", and of the gearbox's mount"
+        found.assume(what, ASSUMED_RATIOS.shafts, "-", source)
         found.assume("damping ratio of meshes", ASSUMED_RATIOS.meshes, "-", source)
+    if rung.flexible.shafts or rung.flexible.carriers:
+        what = "as stiffness, by the time that damps the main shaft's torsion"
+        found.assume("damping of condensed shafts and carriers", what, "", "assumed")
     generator = drivetrain.generator
     known = generator is not None and generator.slip is not None
     if not known and event not in ("dip", "run_up"):
         found.assume("slip of the generator at rated torque", SLIP, "-", "assumed: not stated")
-    found.assume(*ON_THE_GROUND)
+    assume_housings(found, rung.assumes)
+
+
+def state_bounds(found: Findings, runs: Sequence[LevelRun], left_out: Mapping[str, str]) -> None:
+    """State what both bounds of the main bearings' housings do, and what the ladder does not have.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes sentence and tables.
+    runs : sequence of LevelRun
+        All levels.
+    left_out : Mapping[str, str]
+        Levels and parts that the ladder does not have, and why.
+    """
+    bounds = bounds_of(runs)
+    if bounds is not None:
+        found.data("bounds", bound_rows(*bounds))
+        errors = [level_error(*bounds, kind) for kind in QUANTITIES]
+        most = max(errors, key=lambda one: one.error)
+        found.say(
+            "Between both bounds of the main bearings' housings, averaged seats and rigid ones, "
+            f"extremes differ by up to {percent_text(most.error)} ({most.worst})."
+        )
+    if left_out:
+        rows: list[Record] = [
+            {"level or part": name, "because": why} for name, why in left_out.items()
+        ]
+        found.data("levels left out", rows)
 
 
 def state_figures(found: Findings, extremes: Mapping[str, Extreme], run: LevelRun) -> None:
@@ -311,12 +361,12 @@ def _by_instant(
 def _say_level(
     found: Findings, runs: Sequence[LevelRun], number: int, quantity: Kind, error: float
 ) -> None:
-    level, what = runs[number].level.value, QUANTITIES[quantity]
+    level, what = runs[number].rung.name, QUANTITIES[quantity]
     if number == len(runs) - 1:
         found.say(f"Only the finest level, {level}, is within the tolerance for {what}.")
         return
     found.say(
-        f"The level {level} is enough for {what}: its error against {runs[-1].level.value} is "
+        f"The level {level} is enough for {what}: its error against {runs[-1].rung.name} is "
         f"{percent_text(error)}."
     )
 
@@ -340,11 +390,8 @@ def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> lis
         said.append(f"Histories have no {' and no '.join(absent)}: their torque acts alone.")
     if any(not one.own_generator for one in files.values()):
         said.append("A file has no torque of its generator: a line of slip stands for it.")
-    if run.level is not Level.TORSIONAL:
-        said.append(
-            "Planets stand at one azimuth, housings rigidly on the ground: forces of bearings are "
-            "of that."
-        )
+    if run.rung.level is not Level.TORSIONAL:
+        said.append("Planets stand at one azimuth: forces of bearings are of that.")
     said.append("Damping is by ratios; swings decay as these say.")
     return said[:3]
 

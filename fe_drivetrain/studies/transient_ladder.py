@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.comparison.pareto import cheapest_within
+from fe_drivetrain.dynamics.bodies.condensed_rungs import SOFT_SEATS, STIFF_SEATS
 from fe_drivetrain.dynamics.time.machine_channels import Kind
 from fe_drivetrain.studies.transient_runs import LevelRun
 
@@ -67,14 +68,34 @@ def level_error(run: LevelRun, finest: LevelRun, kind: Kind) -> LevelError:
     return found
 
 
-def finest_band(finest: LevelRun, kind: Kind) -> float:
-    """What the step leaves uncertain of the finest level, as `level_error` measures it."""
+def bounds_of(runs: Sequence[LevelRun]) -> tuple[LevelRun, LevelRun] | None:
+    """Runs at the lower and the upper bound of the main bearings' housings; None without both."""
+    known = {run.rung.name: run for run in runs}
+    if SOFT_SEATS not in known or STIFF_SEATS not in known:
+        return None
+    return known[SOFT_SEATS], known[STIFF_SEATS]
+
+
+def finest_band(runs: Sequence[LevelRun], kind: Kind) -> float:
+    """What the step, and both bounds of housings, leave uncertain of the finest level.
+
+    As `level_error` measures it.
+
+    Parameters
+    ----------
+    runs : sequence of LevelRun
+        The same event at each level, the finest last.
+    kind : str
+        Which channels.
+    """
+    finest, bounds = runs[-1], bounds_of(runs)
+    between = 0.0 if bounds is None else level_error(*bounds, kind).error
     shares = [
         max(one.most_band or 0.0, one.least_band or 0.0) / one.largest
         for one in finest.extremes.values()
         if one.kind == kind and one.largest > 0.0
     ]
-    return max(shares, default=0.0)
+    return max(shares, default=0.0) + between
 
 
 def cheapest_level(runs: Sequence[LevelRun], kind: Kind, tolerance: float) -> int:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import bars
@@ -74,11 +75,11 @@ class PartQuestion:
     counted: CountedParts = NO_PARTS
     unnamed: tuple[str, ...] = ()
 
-    def of_event(self, run: LevelRun, level: str, torque: float) -> PartUse | None:
+    def of_event(self, run: LevelRun, torque: float) -> PartUse | None:
         """What an event does, once."""
         if self.options is None or run.parts is None:
             return None
-        rating = PartRating(self.drivetrain, level, torque, self.counted)
+        rating = PartRating(self.drivetrain, run.rung, torque, self.counted)
         pair = None if run.coarser is None else (run.parts, run.coarser)
         return rating.use("event", [run.parts], [1.0], pair)
 
@@ -87,7 +88,6 @@ class PartQuestion:
         of_files: Mapping[str, FileDigest],
         files: Sequence[Path],
         begun: LevelRun,
-        level: str,
         torque: float,
     ) -> PartUse | None:
         """What a year of operation does, as histories and the site's winds have it."""
@@ -97,7 +97,7 @@ class PartQuestion:
         digests = [one.parts for one in known if one.parts is not None]
         winds = [one.wind for one in known]
         times = times_a_year([one.seconds for one in digests], winds, self.options.site, files)
-        rating, pair = PartRating(self.drivetrain, level, torque, self.counted), None
+        rating, pair = PartRating(self.drivetrain, begun.rung, torque, self.counted), None
         if begun.parts is not None and begun.coarser is not None:
             pair = (begun.parts, begun.coarser)
         return rating.use("year", digests, times, pair)
@@ -212,7 +212,7 @@ def damage_chart(use: PartUse) -> Chart:
     )
 
 
-def state_parts(found: Findings, use: PartUse, question: PartQuestion, level: str) -> None:
+def state_parts(found: Findings, use: PartUse, question: PartQuestion, level: Level) -> None:
     """State damage and safety as figures and tables, and what is left out.
 
     Parameters
@@ -223,8 +223,8 @@ def state_parts(found: Findings, use: PartUse, question: PartQuestion, level: st
         What was found.
     question : PartQuestion
         What was asked for.
-    level : str
-        Level of the model.
+    level : Level
+        What may move.
     """
     for flank in use.gears.values():
         band = flank.band if np.isfinite(flank.band) else None
@@ -340,9 +340,9 @@ def _worst(use: PartUse) -> list[str]:
     return said
 
 
-def _not_rated(question: PartQuestion, level: str) -> Iterator[str]:
+def _not_rated(question: PartQuestion, level: Level) -> Iterator[str]:
     """Bearings that have no damage, and why."""
-    if question.counted.bearings and level == "torsional":
+    if question.counted.bearings and level is Level.TORSIONAL:
         names = ", ".join(one.name for one in question.counted.bearings)
         yield (
             f"Bodies only turn at the level torsional, without forces of bearings: {names} are "

@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.time.machine_channels import Kind
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
@@ -18,18 +17,6 @@ from fe_drivetrain.studies.transient_digest import FileDigest
 from fe_drivetrain.studies.transient_instants import ByInstant
 from fe_drivetrain.studies.transient_ladder import QUANTITIES, LevelError
 from fe_drivetrain.studies.transient_runs import Extreme, LevelRun, Samples
-
-LEVELS: Mapping[str, Level] = {
-    "torsional": Level.TORSIONAL,
-    "rigid": Level.RIGID,
-    "flexible": Level.FLEXIBLE,
-}
-"""Levels by the word that asks for them."""
-
-
-def word_of(level: Level) -> str:
-    """The word that asks for a level."""
-    return next(word for word, one in LEVELS.items() if one is level)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -41,7 +28,8 @@ class TransientResult(Result):
     event : str
         Name of the event.
     level : str
-        Level of the model that extremes and samples are of: "torsional", "rigid", "flexible".
+        Level of the model that extremes and samples are of: "torsional", "rigid", "flexible", or
+        the name of a condensed one.
     runs : tuple of LevelRun
         The event at each level that was run, from the simplest to the finest; of operation the
         beginning of the first history. Not part of the JSON.
@@ -89,7 +77,7 @@ class TransientResult(Result):
     @property
     def chosen(self) -> LevelRun:
         """The run at the level that is reported."""
-        return next(run for run in self.runs if run.level is LEVELS[self.level])
+        return next(run for run in self.runs if run.word == self.level)
 
     def frames(self) -> Mapping[str, Any]:
         """Tables that `to_frame` gives, by name: those of the page, and "samples" over time."""

@@ -14,8 +14,8 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison.in_time import InTime, converge_in_time, peak_between
 from fe_drivetrain.drivetrain_file.turning_parts import DampingRatios
+from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
-from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.time.integration import transient
 from fe_drivetrain.dynamics.time.machine_channels import Channels, Kind, machine_channels
@@ -60,18 +60,19 @@ class Rated:
         return {**own, "damping": self.damping.model_dump()}
 
     def running(
-        self, machine: Machine, level: Level, teeth: bool = False, hub_loads: bool = False
+        self, machine: Machine, rung: Rung, teeth: bool = False, hub_loads: bool = False
     ) -> Running:
         """A machine that turns steadily at a level; see `running`."""
         return running(
             machine,
-            level,
+            rung.level,
             self.torque,
             self.rotor_speed,
             self.damping,
             backlash=self.backlash,
             teeth=teeth,
             hub_loads=hub_loads,
+            flexible=rung.flexible,
         )
 
 
@@ -186,8 +187,8 @@ class LevelRun:
 
     Attributes
     ----------
-    level : Level
-        What may move.
+    rung : Rung
+        What may move, and what gives.
     degrees : int
         Number of degrees of freedom.
     seconds : float
@@ -214,7 +215,7 @@ class LevelRun:
 
     __repr__ = short_repr
 
-    level: Level
+    rung: Rung
     degrees: int
     seconds: float
     step: float
@@ -227,6 +228,12 @@ class LevelRun:
     parts: PartDigest | None = field(default=None, repr=False)
     coarser: PartDigest | None = field(default=None, repr=False)
 
+    @property
+    def word(self) -> str:
+        """The word that asks for its level; the level's name of a condensed one."""
+        level = self.rung.level
+        return level.name.lower() if self.rung.name == level.value else self.rung.name
+
 
 class Prepared:
     """A drivetrain at a level, ready to run with any step.
@@ -235,8 +242,8 @@ class Prepared:
     ----------
     machine : Machine
         Table of the machine.
-    level : Level
-        What may move.
+    rung : Rung
+        What may move, and what gives.
     rated : Rated
         Torque, speed and damping.
     teeth : bool
@@ -250,15 +257,15 @@ class Prepared:
     def __init__(
         self,
         machine: Machine,
-        level: Level,
+        rung: Rung,
         rated: Rated,
         teeth: bool = False,
         hub_loads: bool = False,
         parts: CountedParts = NO_PARTS,
     ) -> None:
         begin = perf_counter()
-        self.rated = rated
-        self.of = rated.running(machine, level, teeth, hub_loads)
+        self.rated, self.rung = rated, rung
+        self.of = rated.running(machine, rung, teeth, hub_loads)
         self.channels = machine_channels(self.of)
         self.reader = PartReader(self.of, self.channels, parts)
         self.seconds = perf_counter() - begin
@@ -332,7 +339,7 @@ class Prepared:
         units = tuple(channels.unit(k) for k in range(len(channels.names)))
         samples = Samples(*found, channels.names, units)
         return LevelRun(
-            self.of.level,
+            self.rung,
             len(self.of.system.names),
             self.seconds + perf_counter() - begin,
             step,

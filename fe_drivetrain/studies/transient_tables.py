@@ -62,7 +62,7 @@ def level_rows(
     """A row for each level."""
     return [
         {
-            "level": run.level.value,
+            "level": run.rung.name,
             "degrees of freedom": run.degrees,
             "time [s]": run.seconds,
             "step [s]": run.step,
@@ -78,6 +78,23 @@ def level_rows(
         }
         for k, (run, of) in enumerate(zip(runs, errors, strict=True))
     ]
+
+
+def bound_rows(soft: LevelRun, stiff: LevelRun) -> list[Record]:
+    """A row for each channel: its largest size at both bounds of the main bearings' housings."""
+    rows: list[Record] = []
+    for name, one in soft.extremes.items():
+        if name in stiff.extremes:
+            unit, size = _SHOWN[one.unit]
+            rows.append(
+                {
+                    "channel": name,
+                    "unit": unit,
+                    "largest, seats averaged": one.largest / size,
+                    "largest, seats rigid": stiff.extremes[name].largest / size,
+                }
+            )
+    return rows
 
 
 def over_files(files: Mapping[str, FileDigest], run: LevelRun) -> dict[str, Extreme]:

@@ -11,7 +11,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.dynamics import RUNGS, Asked, Operation, Rung, Rungs, machine_of, rungs_of
+from fe_drivetrain.dynamics import Asked, Operation, Rung, machine_of, rungs_of
 from fe_drivetrain.dynamics.bodies.condensed_rungs import SOFT_SEATS, STIFF_SEATS
 from fe_drivetrain.plots.figures import MINIMUM, error_range, error_traces
 from fe_drivetrain.report.charts import chart
@@ -19,7 +19,7 @@ from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
-from fe_drivetrain.studies.mode_levels import plain_rungs
+from fe_drivetrain.studies.machine_description import assume_housings
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
 from fe_drivetrain.studies.turning_model import TurningModel, TurningQuantity
@@ -61,8 +61,8 @@ class TurningLadder:
     levels : tuple of RungValue
         Levels from the simplest to the finest.
     own : float
-        Error of the finest level, relative: its numerical uncertainty, and half of what both bounds
-        of the main bearings' seats differ by.
+        Error of the finest level, relative: its numerical uncertainty, and what both bounds of the
+        main bearings' seats differ by, since it stands at one of them.
     chosen : int or None
         Number of the simplest level from which on all are within the tolerance; None where the
         finest may be off by more.
@@ -149,26 +149,17 @@ def advise_turning(
     found, steps = Findings(), Steps(report)
     found.seed = None
     found.about(drivetrain)
-    rungs = _rungs(drivetrain, asked, solids, steps)
+    rungs = rungs_of(drivetrain, solids=solids, steps=steps)
     ladder = turning_ladder(drivetrain, asked, rungs.rungs, tolerance, steps)
     _state(found, ladder)
     if rungs.left_out:
         lacking = "; ".join(f"{name} ({why})" for name, why in rungs.left_out.items())
         found.note(f"The ladder does not have: {lacking}.")
-    for what in ladder.finest.rung.assumes:
-        name, _, source = what.partition(": ")
-        found.assume(name, "assumed", "", source or "the file does not state it")
+    assume_housings(found, ladder.finest.rung.assumes)
     options = {"quantity": quantity, "tolerance": tolerance, "solids": solids}
     return TurningAdvice(
         drivetrain=drivetrain, ladder=ladder, **found.frozen(steps.times, **options)
     )
-
-
-def _rungs(drivetrain: Drivetrain, quantity: TurningQuantity, solids: bool, steps: Steps) -> Rungs:
-    """The ladder for a quantity; in time without condensed parts."""
-    if quantity.condensed:
-        return rungs_of(drivetrain, solids=solids, steps=steps)
-    return Rungs(plain_rungs(machine_of(drivetrain)), {"condensed parts": "it is one in time"})
 
 
 def turning_ladder(
@@ -225,26 +216,25 @@ def turning_ladder(
     return TurningLadder(quantity, tolerance, levels, own, _chosen(levels, own, tolerance))
 
 
-def finest_modes(drivetrain: Drivetrain, rungs: Sequence[Rung] = RUNGS) -> Asked:
-    """The machine at the finest rung that its data allow, whose modes number frequencies.
+def finest_modes(drivetrain: Drivetrain, rungs: Sequence[Rung]) -> Asked:
+    """The machine at the finest rung, whose modes number frequencies.
 
     Parameters
     ----------
     drivetrain : Drivetrain
         The drivetrain.
     rungs : sequence of Rung
-        Rungs from the simplest level to the finest.
+        Rungs from the simplest level to the finest, which its data allow.
     """
-    machine = machine_of(drivetrain)
-    return Asked(machine, rungs[0] if machine.not_given else rungs[-1], Operation(0.0))
+    return Asked(machine_of(drivetrain), rungs[-1], Operation(0.0))
 
 
 def _bounds(levels: Sequence[RungValue]) -> float:
-    """Half of what both bounds of the seats differ by, relative; 0 without housings."""
+    """What both bounds of the seats differ by, relative to the upper; 0 without housings."""
     both = [one.value for one in levels if one.rung.name in (SOFT_SEATS, STIFF_SEATS)]
     if len(both) < 2 or both[0] is None or both[1] is None:
         return 0.0
-    return abs(both[0] / both[1] - 1.0) / 2.0
+    return abs(both[0] / both[1] - 1.0)
 
 
 def _chosen(levels: Sequence[RungValue], own: float, tolerance: float) -> int | None:

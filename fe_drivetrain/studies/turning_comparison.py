@@ -9,10 +9,9 @@ import numpy as np
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.dynamics import machine_of
+from fe_drivetrain.dynamics import plain_rungs
 from fe_drivetrain.shafts.fidelity.change_bands import OnSprings
 from fe_drivetrain.shafts.fidelity.designs import Difference, Value, check_comparison, ranked
-from fe_drivetrain.studies.mode_levels import plain_rungs
 from fe_drivetrain.studies.turning_advice import TurningLadder, finest_modes, turning_ladder
 from fe_drivetrain.studies.turning_quantities import turning_quantity
 
@@ -51,15 +50,18 @@ def turning_differences(
     """
     check_comparison(len(designs), tolerance)
     asked = {design: [turning_quantity(of, one) for one in names] for design, of in designs.items()}
-    machines = [machine_of(of) for of in designs.values()]
+    rungs = {design: plain_rungs(of) for design, of in designs.items()}
     # the same levels of all, or their changes are those of levels
-    rungs = min((plain_rungs(machine) for machine in machines), key=len)
-    reference = finest_modes(next(iter(designs.values())), rungs)
+    count = min(map(len, rungs.values()))
+    first = next(iter(designs))
+    reference = finest_modes(designs[first], rungs[first][:count])
     steps = Steps(report)
     found = []
     for number, quantity in enumerate(next(iter(asked.values()))):
         ladders = [
-            turning_ladder(of, asked[design][number], rungs, tolerance, steps, reference)
+            turning_ladder(
+                of, asked[design][number], rungs[design][:count], tolerance, steps, reference
+            )
             for design, of in designs.items()
         ]
         found.append(

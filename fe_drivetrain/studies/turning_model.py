@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -25,7 +25,7 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.dynamics.bodies.bearing_reactions import BearingModel
 from fe_drivetrain.procedure.drivetrain_events import EVENTS
-from fe_drivetrain.studies.drivetrain_transient import rated_of, transient
+from fe_drivetrain.studies.drivetrain_transient import event_at, rated_of
 from fe_drivetrain.studies.gear_answers import GearAnswer, MeshAnswer
 from fe_drivetrain.studies.gear_loads import GearLoading, loads_of
 from fe_drivetrain.studies.gear_options import GearOptions
@@ -36,8 +36,7 @@ from fe_drivetrain.studies.part_damage import PartUse
 from fe_drivetrain.studies.part_loads import RPM
 from fe_drivetrain.studies.rated_gears import GearRating
 from fe_drivetrain.studies.tooth_damage import gear_damage
-from fe_drivetrain.studies.transient_parts import DAMAGE
-from fe_drivetrain.studies.transient_result import TransientResult, word_of
+from fe_drivetrain.studies.transient_parts import DAMAGE, part_question
 from fe_drivetrain.studies.transient_runs import Extreme
 
 _NO_LOADS = GearLoading((), None, None, None, False)
@@ -60,7 +59,8 @@ class TurningModel:
     def __init__(self, drivetrain: Drivetrain, rung: Rung, reference: Asked | None = None) -> None:
         self.drivetrain, self.rung = drivetrain, rung
         self._reference = reference
-        self._events: dict[tuple[str, bool], TransientResult] = {}
+        self._events: dict[str, Mapping[str, Extreme]] = {}
+        self._parts: dict[str, PartUse | None] = {}
 
     @cached_property
     def machine(self) -> Machine:
@@ -116,26 +116,21 @@ class TurningModel:
 
     def peak(self, event: str, channel: str) -> Extreme | None:
         """Extremes of a channel in an event; None where this level does not have them."""
-        found = self._event(event, False)
-        return None if found is None else found.extremes.get(channel)
+        if self.rung.level not in EVENTS[event].levels:
+            return None
+        if event not in self._events:
+            self._events[event] = event_at(self.drivetrain, event, self.rung).extremes
+        return self._events[event].get(channel)
 
     def parts(self, event: str) -> PartUse | None:
         """What an event does to gears and bearings; None where this level does not have it."""
-        found = self._event(event, True)
-        return None if found is None else found.parts
-
-    def _event(self, event: str, damage: bool) -> TransientResult | None:
         if self.rung.level not in EVENTS[event].levels:
             return None
-        if (event, damage) not in self._events:
-            self._events[event, damage] = transient(
-                self.drivetrain,
-                event,
-                level=word_of(self.rung.level),
-                quantity="torque",
-                damage=DAMAGE if damage else None,
-            )
-        return self._events[event, damage]
+        if event not in self._parts:
+            question = part_question(self.drivetrain, self.machine, DAMAGE)
+            run = event_at(self.drivetrain, event, self.rung, question.counted)
+            self._parts[event] = question.of_event(run, rated_of(self.drivetrain).torque)
+        return self._parts[event]
 
     @cached_property
     def lives(self) -> dict[str, Damage]:
@@ -169,15 +164,12 @@ class TurningQuantity:
         Its value of a `TurningModel`; None where the model's level has none.
     own : callable
         Numerical uncertainty of the value [unit]; NaN where it is not known.
-    condensed : bool
-        Whether levels with condensed parts have it, too.
     """
 
     name: str
     unit: str
     of: Callable[[TurningModel], float | None]
     own: Callable[[TurningModel], float]
-    condensed: bool = True
 
     @property
     def numbered(self) -> bool:

@@ -19,11 +19,11 @@ from fe_drivetrain.common.near_words import did_you_mean
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics import (
-    RUNGS,
     Level,
     Machine,
     like_mode,
     machine_of,
+    plain_rungs,
     torsional,
     torsional_frequency,
 )
@@ -139,8 +139,9 @@ def _of_gears(drivetrain: Drivetrain, machine: Machine) -> list[TurningQuantity]
 
 def _of_events(drivetrain: Drivetrain, machine: Machine) -> list[TurningQuantity]:
     """Peaks of all channels in all events that can happen to a drivetrain."""
-    level = Level.TORSIONAL if machine.not_given else Level.FLEXIBLE
-    running = rated_of(drivetrain).running(machine, level)
+    finest = plain_rungs(drivetrain, machine)[-1]
+    level = finest.level
+    running = rated_of(drivetrain).running(machine, finest)
     channels = machine_channels(running)
     return [
         _peak(event, name, UNITS[kind])
@@ -161,7 +162,7 @@ def _peak(event: str, channel: str, unit: str) -> TurningQuantity:
         one = model.peak(event, channel)
         return None if one is None else one.largest
 
-    return TurningQuantity(f"transient.{event}.{channel}.peak", unit, of, own, condensed=False)
+    return TurningQuantity(f"transient.{event}.{channel}.peak", unit, of, own)
 
 
 def turning_quantity(drivetrain: Drivetrain, name: str) -> TurningQuantity:
@@ -227,13 +228,14 @@ def _of_modes(name: str, of: Callable[[TurningModel], float | None]) -> TurningQ
         """What the number of elements of the shafts leaves open, without anything condensed."""
         if model.rung.level is not Level.FLEXIBLE:
             return 0.0
-        plain = TurningModel(model.drivetrain, RUNGS[-1], model.reference)
+        finest = plain_rungs(model.drivetrain, model.machine)[-1]
+        plain = TurningModel(model.drivetrain, finest, model.reference)
         value = of(plain)
         if value is None:
             return float("nan")
         frequencies = plain.asked.modes.frequencies
         nearest = int(abs(frequencies[frequencies > 0.0] - value).argmin())
-        bands = element_bands(model.machine, False, BANDED)
+        bands = element_bands(model.machine, False, BANDED, finest.flexible)
         return float(bands[nearest]) if nearest < len(bands) else float("nan")
 
     return TurningQuantity(name, "Hz", of, own)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.dynamics import machine_of
+from fe_drivetrain.dynamics import Asked, machine_of, plain_rungs
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.shafts.uncertainty.input_study import ModelError, Study
 from fe_drivetrain.shafts.uncertainty.sampling import (
@@ -18,9 +18,9 @@ from fe_drivetrain.shafts.uncertainty.sampling import (
     sobol_shares,
     spreads_of,
 )
-from fe_drivetrain.studies.mode_levels import named_level, plain_rungs
+from fe_drivetrain.studies.mode_levels import named_level
 from fe_drivetrain.studies.turning_advice import TurningLadder, finest_modes, turning_ladder
-from fe_drivetrain.studies.turning_model import TurningModel
+from fe_drivetrain.studies.turning_model import TurningModel, TurningQuantity
 from fe_drivetrain.studies.turning_quantities import turning_quantity
 
 
@@ -74,7 +74,7 @@ def turning_study(
     check_spreads(drivetrain)
     quantities = [turning_quantity(drivetrain, name) for name in asked.names]
     machine, steps = machine_of(drivetrain), Steps(report)
-    rungs = plain_rungs(machine)
+    rungs = plain_rungs(drivetrain, machine)
     wanted = None if asked.level is None else named_level(str(asked.level), machine)
     ladders = [turning_ladder(drivetrain, one, rungs, asked.tolerance, steps) for one in quantities]
     if wanted is None:
@@ -85,8 +85,7 @@ def turning_study(
     reference, rung = finest_modes(drivetrain, rungs), rungs[number]
 
     def evaluate(changed: Drivetrain) -> dict[str, float]:
-        model = TurningModel(changed, rung, reference)
-        return {one.name: one.value(model) for one in quantities}
+        return values_at(changed, quantities, number, reference)
 
     report("sensitivities")
     slopes = sensitivities(drivetrain, evaluate, list(spreads_of(drivetrain)))
@@ -102,6 +101,26 @@ def turning_study(
     return Study(
         drivetrain, rung.name, (), quantities, names, slopes, samples, errors, {}, {}, (), shares
     )
+
+
+def values_at(
+    drivetrain: Drivetrain, quantities: Sequence[TurningQuantity], number: int, reference: Asked
+) -> dict[str, float]:
+    """Quantities of a sample at a level, with the mount of that sample.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The sample.
+    quantities : sequence of TurningQuantity
+        What is asked for.
+    number : int
+        Number of the level among `plain_rungs`.
+    reference : Asked
+        Machine whose modes number frequencies.
+    """
+    model = TurningModel(drivetrain, plain_rungs(drivetrain)[number], reference)
+    return {one.name: one.value(model) for one in quantities}
 
 
 def enough_for_all(ladders: Sequence[TurningLadder]) -> int:

@@ -17,10 +17,11 @@ from fe_drivetrain.drivetrain_file.reading import library_text
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.drivetrain_file.without_weight import weightless
 from fe_drivetrain.dynamics.bodies.bearing_reactions import BearingModel, bearing_reactions
+from fe_drivetrain.dynamics.bodies.gearbox_mount import stated_mount
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import library_machine, machine_of
 from fe_drivetrain.studies import LifeOptions, LifeResult, life
-from fe_drivetrain.studies.gearbox_bearings import gearbox_mount, gearbox_oil
+from fe_drivetrain.studies.gearbox_bearings import gearbox_oil
 from fe_drivetrain.studies.rolling_bearings import bearings_of
 
 WHOLE, GEARS = "grc_750kw", "nrel_750kw"
@@ -49,7 +50,7 @@ def with_gears(
 
 
 MACHINE = machine_of(with_gears())
-MOUNT = gearbox_mount(with_gears(), MACHINE)
+MOUNT = stated_mount(with_gears(), MACHINE)
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,11 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.dynamics.bodies.advice import RUNGS, Operation, Rung
 from fe_drivetrain.dynamics.bodies.catalogue_seats import catalogued, on_catalogue
+from fe_drivetrain.dynamics.bodies.condensed_rungs import ON_ROLLERS, Rungs, with_rollers
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
+from fe_drivetrain.dynamics.bodies.mesh_loads import MeshResponses, with_slices
 from fe_drivetrain.dynamics.bodies.roller_seats import OnRollers
+from fe_drivetrain.dynamics.bodies.rolling_meshes import RollingMeshes
 
 RIGID: Rung = RUNGS[1]
 LOADED = Operation(1.0e6)
@@ -86,3 +89,45 @@ def test_what_cannot_be_on_rollers_is_refused(
 ) -> None:
     with pytest.raises(InputError, match=message):
         on_catalogue(rolling(changes), RIGID, LOADED, names)
+
+
+def test_meshes_on_rollers_carry_the_torque_and_only_press() -> None:
+    """Pins on rollers, which resist a tilt: in sum the forces of springs, spread otherwise."""
+    machine = rolling(PINS)
+    (rung,) = with_rollers(Rungs((RIGID,), {}), machine).rungs[1:]
+    assert rung.name == ON_ROLLERS
+    assert "clearance and rollers of bearings" in RIGID.neglects
+    assert "clearance and rollers of bearings" not in rung.neglects
+    hub = np.array([0.0, 0.0, 0.0, 0.0, 2.0e5, 0.0])
+    rollers, springs = RollingMeshes(machine, rung, 2, 3), MeshResponses(machine, RIGID.level, 2, 3)
+    found, linear = (one.under(1.0e6, hub) for one in (rollers, springs))
+    assert rollers.under(1.0e6, hub) is found
+    for name, forces in found.slices.items():
+        assert forces.min() >= 0.0
+        known = linear.slices[name].sum(axis=(1, 2))
+        np.testing.assert_allclose(forces.sum(axis=(1, 2)), known, rtol=1e-6)
+    mesh = "stage 1 sun-planet"
+    each = [one.slices[mesh].max() / one.slices[mesh].mean() for one in (found, linear)]
+    assert each[0] != pytest.approx(each[1], rel=1e-3)
+    # an equilibrium of its own, at the second azimuth
+    mine = on_catalogue(
+        with_slices(machine, 3), rung, LOADED, azimuth=float(found.azimuths[1]), hub=hub
+    )
+    assert found.slices[mesh][1].sum(axis=1) == pytest.approx(
+        [mine.static.force(f"{mesh} {k}") for k in (1, 2, 3)], rel=1e-6
+    )
+
+
+def test_a_lifted_rotor_is_one_without_weight() -> None:
+    machine = rolling(PINS)
+    (rung,) = with_rollers(Rungs((RIGID,), {}), machine).rungs[1:]
+    weight = np.array([0.0, 0.0, -GRAVITY * machine.rotor.apart[0], 0.0, 0.0, 0.0])
+    heavy = RollingMeshes(machine, rung, 1, 3).under(1.0e6)
+    light = RollingMeshes(machine, rung, 1, 3, weight=False).under(1.0e6, weight)
+    for name, forces in heavy.slices.items():
+        np.testing.assert_allclose(light.slices[name], forces, rtol=1e-6, atol=1e-3)
+
+
+def test_a_ladder_without_entries_has_no_rollers() -> None:
+    with pytest.raises(InputError, match=r"no bearing of .* has a catalogue entry and a load"):
+        with_rollers(Rungs((RIGID,), {}), rolling({}))

@@ -19,6 +19,7 @@ from fe_drivetrain.dynamics import (
     library_machine,
     machine_of,
     machine_system,
+    plain_rungs,
     system_modes,
     torsional_frequency,
     turning_modes,
@@ -200,7 +201,8 @@ def test_without_turning_the_register_is_that_of_the_modes_at_rest() -> None:
 def test_levels_are_those_of_the_ladder() -> None:
     mine = read_drivetrain("nrel_5mw")
     found = modes(mine, level="torsional")
-    known = ladder(machine_of(mine), Operation(0.0), questions={"f": torsional_frequency(1)})
+    questions = {"f": torsional_frequency(1)}
+    known = ladder(machine_of(mine), Operation(0.0), plain_rungs(mine), questions)
     name = "first torsional frequency [Hz]"
     assert [one.values[name] for one in found.ladder] == pytest.approx(
         [one.values["f"] for one in known]

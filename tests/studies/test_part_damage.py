@@ -15,8 +15,9 @@ from fe_drivetrain.common.array_records import as_arrays, from_arrays
 from fe_drivetrain.common.components import FORCES, GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file import Scene, read_drivetrain
-from fe_drivetrain.dynamics.bodies.advice import Rung
+from fe_drivetrain.dynamics.bodies.advice import RUNGS
 from fe_drivetrain.dynamics.bodies.bearing_reactions import BearingModel
+from fe_drivetrain.dynamics.bodies.condensed_rungs import plain_rungs
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import machine_of
 from fe_drivetrain.gear.load_factors import LoadFactors
@@ -38,7 +39,6 @@ from fe_drivetrain.studies.gear_machine import gear_train
 from fe_drivetrain.studies.gear_meshes import gear_meshes
 from fe_drivetrain.studies.gear_spectra import TorqueSpectrum
 from fe_drivetrain.studies.gear_stresses import MeshStresses
-from fe_drivetrain.studies.gearbox_bearings import gearbox_mount
 from fe_drivetrain.studies.part_bearings import counted_parts
 from fe_drivetrain.studies.part_damage import times_a_year
 from fe_drivetrain.studies.part_gears import GearUses
@@ -130,7 +130,7 @@ def digest_of(torque: float, turns: float) -> PartDigest:
 
 
 def test_levels_of_torque_add_up_and_a_reversed_one_loads_the_other_flank() -> None:
-    uses = GearUses(gear_train(WHOLE, GearOptions(level="torsional"), RATED.torque))
+    uses = GearUses(gear_train(WHOLE, GearOptions(), RATED.torque), RUNGS[0])
     high, low, back = (digest_of(share * RATED.torque, 10.0) for share in (1.2, 0.8, -0.8))
     alone = [uses.under([one], [1.0], None)["stage 3 pinion"] for one in (high, low, back)]
     both = uses.under([high, low, back], [3.0, 5.0, 7.0], None)["stage 3 pinion"]
@@ -174,7 +174,7 @@ def test_bearings_have_the_damage_of_the_forces_that_statics_give_them(
     carried: TransientResult,
 ) -> None:
     """At rated torque forces are those of statics at the same azimuth, and speeds kinematic."""
-    model = BearingModel(MACHINE, Level.RIGID)
+    model = BearingModel(MACHINE, Level.RIGID, flexible=carried.chosen.rung.flexible)
     hub = np.array([0.0, 0.0, -GRAVITY * MACHINE.rotor.apart[0], RATED.torque, 0.0, 0.0])
     counted, unnamed = counted_parts(WHOLE, MACHINE, LifeOptions(), False)
     assert "INP-A" in unnamed
@@ -262,9 +262,8 @@ def test_quantities_are_those_of_events_and_lives(
 ) -> None:
     known = turning_quantities(WHOLE)
     assert {"transient.stop.stage 3 mesh.damage", "transient.offset.PLC-B.S0"} <= set(known)
-    rung = Rung(Level.FLEXIBLE, gearbox_mount(WHOLE, MACHINE), "on its mount")  # type: ignore[arg-type]
-    model = TurningModel(WHOLE, rung)
-    model._events["dip", True] = carried
+    model = TurningModel(WHOLE, plain_rungs(WHOLE, MACHINE)[-1])
+    model._parts["dip"] = carried.parts
     assert carried.parts is not None
     use = carried.parts.bearings["PLC-B"]
     assert known["transient.dip.PLC-B.damage"].of(model) == use.damage["L10"]

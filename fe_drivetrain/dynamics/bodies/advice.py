@@ -54,6 +54,8 @@ class Rung:
         Values that no file gives, and why so.
     seconds : float
         Time that it took to condense what gives, beyond the rung before [s].
+    rollers : bool
+        Whether bearings with a catalogue entry are on their rollers, in statics.
     """
 
     level: Level
@@ -62,6 +64,7 @@ class Rung:
     neglects: tuple[str, ...] = ()
     assumes: tuple[str, ...] = ()
     seconds: float = 0.0
+    rollers: bool = False
 
 
 #: What models without anything condensed leave out.

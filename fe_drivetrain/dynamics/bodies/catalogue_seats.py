@@ -7,16 +7,17 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.catalogue import catalogue_bearing
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.turning_parts import BearingData, PinData
 from fe_drivetrain.dynamics.bodies.advice import Operation, Rung
 from fe_drivetrain.dynamics.bodies.bodies import assemble
 from fe_drivetrain.dynamics.bodies.levels import assembly, steady_load
-from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.bodies.roller_seats import (
     OnRollers,
     Seat,
@@ -24,14 +25,15 @@ from fe_drivetrain.dynamics.bodies.roller_seats import (
     planet_seats,
     static_on_rollers,
 )
+from fe_drivetrain.dynamics.bodies.system import springs_named
 
 
-def catalogued(machine: Machine) -> dict[str, BearingData | PinData]:
+def catalogued(machine: MachineTable) -> dict[str, BearingData | PinData]:
     """Bearings with a catalogue entry by name; those of planets "stage 1 pin upwind" and so on.
 
     Parameters
     ----------
-    machine : Machine
+    machine : MachineTable
         The machine.
     """
     rows: dict[str, BearingData | PinData] = {row.name: row for row in machine.bearings}
@@ -42,13 +44,15 @@ def catalogued(machine: Machine) -> dict[str, BearingData | PinData]:
 
 
 def on_catalogue(
-    machine: Machine,
+    machine: MachineTable,
     rung: Rung,
     operation: Operation,
     names: Sequence[str] | None = None,
     *,
     catalogues: Sequence[str | Path] = (),
     azimuth: float = 0.0,
+    hub: ArrayLike = (0.0,) * 6,
+    pressing: Sequence[str] = (),
 ) -> OnRollers:
     """Equilibrium of a machine on the rollers of its catalogued bearings, with their clearances.
 
@@ -57,7 +61,7 @@ def on_catalogue(
 
     Parameters
     ----------
-    machine : Machine
+    machine : MachineTable
         The machine.
     rung : Rung
         Level, and what gives; not the torsional one.
@@ -70,6 +74,10 @@ def on_catalogue(
         Catalogue files beside the package's.
     azimuth : float
         Azimuth of the rotor's shaft [rad].
+    hub : array_like, (6,)
+        Forces and moments on the rotor beside those of the operation [N, N m].
+    pressing : sequence of str
+        Names of meshes, whose slices then only press.
 
     Returns
     -------
@@ -102,8 +110,12 @@ def on_catalogue(
         if name in found.seats:
             seats.append(machine_seat(found, name, bearing))
     seats += _of_planets(machine, rung, kinds, azimuth)
-    hub = np.array([0.0, 0.0, 0.0, 0.0, operation.moment, 0.0])
-    return static_on_rollers(system, steady_load(machine, system, operation.torque, hub), seats)
+    wrench = np.array(hub, dtype=float)
+    wrench[4] += operation.moment
+    load = steady_load(machine, system, operation.torque, wrench)
+    names = system.spring_names
+    contacts = [names[k] for mesh in pressing for k in springs_named(names, mesh)]
+    return static_on_rollers(system, load, seats, contacts=contacts)
 
 
 def bearing_of(row: BearingData | PinData, catalogues: Sequence[str | Path] = ()) -> Bearing:
@@ -126,7 +138,7 @@ def bearing_of(row: BearingData | PinData, catalogues: Sequence[str | Path] = ()
 
 
 def _of_planets(
-    machine: Machine, rung: Rung, kinds: Mapping[str, Bearing], azimuth: float
+    machine: MachineTable, rung: Rung, kinds: Mapping[str, Bearing], azimuth: float
 ) -> list[Seat]:
     """Seats of planets' bearings, in the order of the stages."""
     found = []

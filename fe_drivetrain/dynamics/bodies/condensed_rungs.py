@@ -1,8 +1,9 @@
 """The ladder of a drivetrain: as many levels as its file states what they need.
 
-After bodies and beam shafts, what is condensed comes in, one cause after the other: housings of
-main bearings at both bounds of their seats, the gearbox's housing on its mount, carriers, the main
-shaft in its meridian or as a solid. Each rung keeps what the ones before it brought.
+Bodies and beam shafts have the gearbox's housing on its mount where the file states one. Then what
+is condensed comes in, one cause after the other: housings of main bearings at both bounds of their
+seats, carriers, the main shaft in its meridian or as a solid. Each rung keeps what the ones before
+it brought.
 """
 
 from __future__ import annotations
@@ -20,8 +21,9 @@ from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.joint_springs import free_to_turn
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.bodies.advice import RUNGS, UNCONDENSED, Rung
+from fe_drivetrain.dynamics.bodies.catalogue_seats import catalogued
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
-from fe_drivetrain.dynamics.bodies.gearbox_mount import on_mount
+from fe_drivetrain.dynamics.bodies.gearbox_mount import stated_mount
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
 from fe_drivetrain.elasticity.solve.condensation import Condensed
@@ -33,13 +35,82 @@ from fe_drivetrain.shafts.fidelity.shafts import meridian_shaft, solid_shaft
 SOFT_SEATS, STIFF_SEATS = "housings, seats averaged", "housings, seats rigid"
 """Names of the rungs with housings of main bearings, at their lower and their upper bound."""
 
+ON_ROLLERS = "bearings on their rollers"
+"""Name of the rung with the rollers of catalogued bearings, and their clearance."""
+
 _HOUSINGS, _MOUNT, _CARRIERS, _SECTIONS, _ROLLERS = UNCONDENSED
+_DEFORMS = "a gearbox housing that deforms"
 _TUBE = (
     "inertia of the gearbox's housing: a thin tube round the largest gear, from the first stage to "
     "the last, since gearbox.housing_inertia is not given"
 )
-_NO_MASS = "the gearbox's housing has no mass, since gearbox.weight is not given"
+_NO_MASS = (
+    "mass of the gearbox's housing: none, so that it follows its mount at once, since "
+    "gearbox.weight is not given"
+)
 _REST = "mass of the gearbox's housing: what gears and shafts leave of gearbox.weight"
+
+_ON_MOUNT = (
+    "gearbox's housing: rigid in itself, on the springs of gearbox.stiffness at the main shaft's "
+    "rear face; ring and bearings of the gearbox are in it"
+)
+_ON_GROUND = "gearbox's housing: rigid, on the ground, since {}"
+_RIGID_MAINS = "housings of main bearings: rigid, on the ground"
+
+
+def plain_rungs(drivetrain: Drivetrain, machine: Machine | None = None) -> tuple[Rung, ...]:
+    """Levels without anything that has to be condensed, as far as a file has data for them.
+
+    Torsional, where bodies turn and no housing moves; rigid bodies and flexible shafts, with the
+    gearbox's housing on the springs of its mount where the file states them.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    machine : Machine or None
+        Its machine, where it is known; that of `machine_of` if not given.
+
+    Raises
+    ------
+    InputError
+        `machine_of` refuses the drivetrain, or its mount cannot be, see `gearbox_housing`.
+    """
+    made = machine_of(drivetrain) if machine is None else machine
+    if made.not_given:
+        return RUNGS[:1]
+    gives = stated_mount(drivetrain, made)
+    assumes = (*_of_housing(drivetrain, gives), _RIGID_MAINS)
+    swap = {} if gives.housing is None else {_MOUNT: _DEFORMS}
+    finer = (
+        replace(
+            rung,
+            flexible=gives,
+            neglects=tuple(swap.get(what, what) for what in rung.neglects),
+            assumes=assumes,
+        )
+        for rung in RUNGS[1:]
+    )
+    return (RUNGS[0], *finer)
+
+
+def _without_mount(drivetrain: Drivetrain) -> str:
+    """Why a drivetrain's gearbox has no mount."""
+    if not isinstance(drivetrain, Scene):
+        return "a main shaft without sections has no gearbox.stiffness"
+    return "gearbox.stiffness is not given"
+
+
+def _of_housing(drivetrain: Drivetrain, gives: Flexible) -> tuple[str, ...]:
+    """What is assumed of the gearbox's housing."""
+    if not drivetrain.gearbox.stages:
+        return ()
+    if gives.housing is None or not isinstance(drivetrain, Scene):
+        return (_ON_GROUND.format(_without_mount(drivetrain)),)
+    if not drivetrain.gearbox.weight > 0:
+        return (_ON_MOUNT, _NO_MASS)
+    tube = () if drivetrain.gearbox.housing_inertia is not None else (_TUBE,)
+    return (_ON_MOUNT, _REST, *tube)
 
 
 @dataclass(frozen=True)
@@ -97,10 +168,9 @@ def rungs_of(
     Returns
     -------
     Rungs
-        Torsional, rigid bodies, flexible shafts; then `SOFT_SEATS` and `STIFF_SEATS` of a main
-        shaft on housings, "gearbox housing on its mount", "carriers of beams", "main shaft in its
-        meridian", and with ``solids`` "solid main shaft and carriers". All are for the one
-        `machine_of` the drivetrain.
+        Those of `plain_rungs`; then `SOFT_SEATS` and `STIFF_SEATS` of a main shaft on housings,
+        "carriers of beams", "main shaft in its meridian", and with ``solids`` "solid main shaft and
+        carriers". All are for the one `machine_of` the drivetrain.
 
     Raises
     ------
@@ -112,15 +182,16 @@ def rungs_of(
         why = f"the file does not state {', '.join(machine.not_given)}"
         return Rungs(RUNGS[:1], {rung.name: why for rung in RUNGS[1:]})
     clock = Steps() if steps is None else steps
-    built = _Built(list(RUNGS), {}, Flexible(), clock)
+    plain = plain_rungs(drivetrain, machine)
+    built = _Built(list(plain), {}, plain[-1].flexible, clock)
+    if drivetrain.gearbox.stages and built.gives.housing is None:
+        built.left_out["gearbox housing on its mount"] = _without_mount(drivetrain)
     carriers = carriers_of(drivetrain)
     if isinstance(drivetrain, Scene):
         _add_housings(built, main_supports(drivetrain, cache, clock))
-        _add_mount(built, drivetrain, machine)
     else:
         why = "the main shaft has no sections and no bearing units"
         built.left_out |= {SOFT_SEATS: why, STIFF_SEATS: why}
-        built.left_out["gearbox housing on its mount"] = "gearbox.stiffness is not given"
     if carriers:
         frames = {number: carrier_frame(component) for number, component in carriers.items()}
         given = replace(built.gives, carriers=frames)
@@ -132,6 +203,39 @@ def rungs_of(
     else:
         built.left_out["main shaft in its meridian"] = "the main shaft has no sections"
     return Rungs(tuple(built.rungs), built.left_out)
+
+
+def with_rollers(rungs: Rungs, machine: Machine) -> Rungs:
+    """The ladder with one rung more: bearings with a catalogue entry on their rollers, in statics.
+
+    Parameters
+    ----------
+    rungs : Rungs
+        Ladder of a drivetrain.
+    machine : Machine
+        Its machine.
+
+    Raises
+    ------
+    InputError
+        No bearing has an entry, or the last rung has no forces of bearings.
+    """
+    last = rungs.rungs[-1]
+    if last.level is Level.TORSIONAL or not catalogued(machine):
+        raise InputError(
+            f"no bearing of {machine.title!r} has a catalogue entry and a load, whose rollers "
+            "could carry it: give bearings catalogue, or leave rollers out"
+        )
+    names = ", ".join(catalogued(machine))
+    finer = replace(
+        last,
+        name=ON_ROLLERS,
+        neglects=tuple(what for what in last.neglects if what != _ROLLERS),
+        assumes=(*last.assumes, f"rings of {names}: rigid, without housings of their own"),
+        seconds=0.0,
+        rollers=True,
+    )
+    return Rungs((*rungs.rungs, finer), rungs.left_out)
 
 
 @dataclass
@@ -169,7 +273,7 @@ class _Built:
             neglects = (instead, *neglects)
         whole = sum(self.clock.times.values())
         seconds, self.counted = whole - self.counted, whole
-        assumed = (*last.assumes, *assumes)
+        assumed = (*(a for a in last.assumes if a not in no_longer), *assumes)
         self.rungs.append(Rung(Level.FLEXIBLE, gives, name, neglects, assumed, seconds))
         self.gives = gives
 
@@ -187,22 +291,7 @@ def _add_housings(built: _Built, supports: MainSupports) -> None:
         bearings = {bearing: free_to_turn(K) for bearing, K in found.items()}
         given = replace(built.gives, bearings=bearings)
         instead = "" if name == STIFF_SEATS else _SHAPE
-        built.add(name, given, (_HOUSINGS,), instead)
-
-
-def _add_mount(built: _Built, scene: Scene, machine: Machine) -> None:
-    """Add the gearbox's housing on its mount; main bearings and generator stand beside it."""
-    name = "gearbox housing on its mount"
-    try:
-        given = on_mount(scene, machine, built.gives)
-    except InputError as error:
-        built.left_out[name] = str(error)
-        return
-    heavy = scene.gearbox.weight > 0
-    assumed = [_REST if heavy else _NO_MASS]
-    if heavy and scene.gearbox.housing_inertia is None:
-        assumed.append(_TUBE)
-    built.add(name, given, (_MOUNT,), "a gearbox housing that deforms", tuple(assumed))
+        built.add(name, given, (_HOUSINGS, _RIGID_MAINS), instead)
 
 
 def _add_shaft(

@@ -69,6 +69,25 @@ def with_damping_ratios(
     return replace(system, damping=found)
 
 
+def condensed_seconds(machine: MachineTable, ratios: DampingRatios = ASSUMED_RATIOS) -> float:
+    """Damping over stiffness of condensed parts [s]: that of the torsion of the main shaft.
+
+    A condensed main shaft then is damped in torsion as its beam is; 0 of a rigid one.
+
+    Parameters
+    ----------
+    machine : MachineTable
+        Table of the machine.
+    ratios : DampingRatios
+        Damping ratios of what the table gives no damper for.
+    """
+    name, simple = f"{machine.shafts[0].name} rx", machine_system(machine, Level.TORSIONAL)
+    if name not in simple.spring_names:
+        return 0.0
+    given = float((simple.damping / simple.stiffness)[simple.spring(name)])
+    return given if given > 0.0 else _torsional_seconds(machine, ratios).get(name, 0.0)
+
+
 def _torsional_seconds(machine: MachineTable, ratios: DampingRatios) -> dict[str, float]:
     """Damping over stiffness of each mesh and each shaft's torsion [s]."""
     simple = machine_system(machine, Level.TORSIONAL)

@@ -21,11 +21,14 @@ from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.dynamics.bodies.bodies import Body, Superelement
 from fe_drivetrain.dynamics.bodies.elastic_ring import Rim
 from fe_drivetrain.dynamics.bodies.planetary import PlanetarySet
-from fe_drivetrain.dynamics.bodies.springs import Place
+from fe_drivetrain.dynamics.bodies.springs import Place, Spring, bushing
 from fe_drivetrain.elasticity.solve.condensation import Condensed
 
 #: Allowed distance of a carrier's pin from its planet, over the length.
 PLACED = 1e-6
+
+MOUNT = "gearbox mount"
+"""Name of the springs that a housing rigid in itself stands on."""
 
 
 @dataclass(frozen=True)
@@ -173,8 +176,10 @@ def carrier_element(
     return bodies, Superelement(f"{stage.name} carrier", joined, (K + K.T) / 2), pins
 
 
-def housing_bodies(housing: Housing | ElasticHousing) -> tuple[list[Body], Superelement]:
-    """The housing's body, or those of its points, and its spring to the ground."""
+def housing_bodies(
+    housing: Housing | ElasticHousing,
+) -> tuple[list[Body], list[Superelement], list[Spring]]:
+    """The housing's body, or those of its points, and what holds it on the ground."""
     if isinstance(housing, ElasticHousing):
         places = [
             housing.holds(n, p) for n, p in zip(housing.points, housing.positions, strict=True)
@@ -182,10 +187,14 @@ def housing_bodies(housing: Housing | ElasticHousing) -> tuple[list[Body], Super
         names = tuple(place.body for place in places)
         K = np.asarray(housing.stiffness, dtype=float)
         bodies = [Body(place.body, place.centre) for place in places]
-        return bodies, Superelement("housing", names, K, housing.mass)
-    body = Body("housing", housing.position, housing.mass, housing.polar, housing.transverse)
+        return bodies, [Superelement("housing", names, K, housing.mass)], []
+    at = housing.position
+    body = Body("housing", at, housing.mass, housing.polar, housing.transverse)
     K = np.asarray(housing.stiffness, dtype=float)
-    return [body], Superelement("housing", ("housing",), K)
+    coupled = (np.diag(K.diagonal()) != K).any()
+    # springs, not a superelement: dampers, forces and energy are those of springs
+    springs = bushing(MOUNT, Place("housing", at), None, at, K if coupled else K.diagonal())
+    return [body], [], springs
 
 
 def held_by(housing: Housing | ElasticHousing | None, name: str, at: ArrayLike) -> Place | None:

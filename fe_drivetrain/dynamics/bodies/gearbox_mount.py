@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.joint_springs import as_numbers
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
@@ -87,6 +88,31 @@ def on_mount(scene: Scene, machine: MachineTable, gives: Flexible | None = None)
     outside = {b.name for b in scene.gearbox.bearings if b.holds in ("rotor", "generator")}
     mains = {bearing.name for bearing in machine.bearings} & set(scene.bearing_names)
     return replace(gives or Flexible(), housing=housing, apart=frozenset(outside | mains))
+
+
+def stated_mount(drivetrain: Drivetrain, machine: MachineTable) -> Flexible:
+    """What gives by a drivetrain's file alone: the gearbox's housing on its mount, see `on_mount`.
+
+    Nothing where the file has no gears, or gives its mount no stiffness: the housing then is rigid
+    and stands on the ground.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    machine : MachineTable
+        Its rows, see `machine_of`.
+
+    Raises
+    ------
+    InputError
+        See `gearbox_housing`.
+    """
+    if not isinstance(drivetrain, Scene) or not machine.stages:
+        return Flexible()
+    if not as_numbers(drivetrain.gearbox.stiffness).any():
+        return Flexible()
+    return on_mount(drivetrain, machine)
 
 
 def mass_inside(machine: MachineTable) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,7 @@ from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.joint_springs import free_to_turn
 from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.dynamics.bodies.condensed_rungs import plain_rungs
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system, steady_load
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
@@ -86,7 +87,7 @@ def housing_bounds(
     ----------
     scene : Scene
         The drivetrain, with a rotor and a generator; everything else of it is at the level of
-        flexible shafts.
+        flexible shafts, see `plain_rungs`.
     torque : float
         Torque on the rotor about x, held by the generator [N m].
     hub : array_like, (6,)
@@ -103,8 +104,9 @@ def housing_bounds(
     """
     machine, found = machine_of(scene), main_supports(scene, cache)
     wrench = np.asarray(hub, dtype=float)
+    plain = plain_rungs(scene, machine)[-1].flexible
     ways = [
-        Flexible(bearings={name: free_to_turn(K) for name, K in way.items()})
+        replace(plain, bearings={name: free_to_turn(K) for name, K in way.items()})
         for way in (found.soft, found.stiff)
     ]
     loads = [_reactions(machine, scene, way, torque, wrench) for way in ways]
@@ -118,7 +120,7 @@ def housing_bounds(
             }
             for name in loads[0]
         },
-        _frequencies(machine, Flexible(), modes),
+        _frequencies(machine, plain, modes),
         found.left_out,
     )
 

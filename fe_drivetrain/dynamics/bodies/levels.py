@@ -136,9 +136,10 @@ def assembly(
         gives = Flexible()
     built = Assembly([], [], {}, [])
     if gives.housing is not None:
-        of_housing, element = housing_bodies(gives.housing)
+        of_housing, condensed, mount = housing_bodies(gives.housing)
         built.bodies.extend(of_housing)
-        built.superelements.append(element)
+        built.superelements.extend(condensed)
+        built.springs.extend(mount)
     mass, across = machine.rotor.apart
     built.bodies.append(
         Body("rotor", (0.0, 0.0, 0.0), mass, machine.rotor.inertia, across, 1.0, free)

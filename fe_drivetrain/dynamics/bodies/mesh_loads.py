@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,10 +20,13 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.dynamics.bodies.bodies import assemble
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
-from fe_drivetrain.dynamics.bodies.levels import Level, azimuths, machine_system
+from fe_drivetrain.dynamics.bodies.levels import Level, assembly, azimuths
 from fe_drivetrain.dynamics.bodies.static import solved
 from fe_drivetrain.dynamics.bodies.system import System, springs_named
+
+AnyMachine = TypeVar("AnyMachine", bound=MachineTable)
 
 _CONTACT = 1e-12
 """Forces below this share of the largest one count as none."""
@@ -80,11 +84,7 @@ class MeshResponses:
         weight: bool = True,
         flexible: Flexible | None = None,
     ) -> None:
-        sliced = machine.model_copy(
-            update={
-                "stages": tuple(s.model_copy(update={"slices": slices}) for s in machine.stages)
-            }
-        )
+        sliced = with_slices(machine, slices)
         self.azimuths = azimuths(count)
         self.meshes = mesh_springs(machine)
         self._at = [
@@ -115,6 +115,12 @@ class MeshResponses:
             for name, places in one.places.items():
                 found[name].append(forces[places])
         return MeshLoads(self.azimuths, {name: np.array(rows) for name, rows in found.items()})
+
+
+def with_slices(machine: AnyMachine, slices: int) -> AnyMachine:
+    """The machine with a number of slices of each mesh."""
+    stages = tuple(stage.model_copy(update={"slices": slices}) for stage in machine.stages)
+    return machine.model_copy(update={"stages": stages})
 
 
 def mesh_springs(machine: MachineTable) -> dict[str, tuple[str, ...]]:
@@ -179,7 +185,9 @@ def _responses(
     flexible: Flexible | None,
 ) -> _Responses:
     """Responses of the meshes with the rotor at an azimuth [rad]."""
-    system = machine_system(machine, level, azimuth, held_generator=True, flexible=flexible)
+    built = assembly(machine, level, azimuth, held_generator=True, flexible=flexible)
+    # with bodies without mass: gaps load a housing that has none, too
+    system = assemble(built.bodies, built.springs, built.superelements)
     chosen, places = _chosen(system, meshes)
     rows, k = system.rows[chosen], system.stiffness[chosen]
     loads = np.column_stack([_gravity(system, weight), _hub(system)])

@@ -22,9 +22,9 @@ from fe_drivetrain.common.arrays import Bools, Floats, chunks
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
 from fe_drivetrain.dynamics.bodies.levels import Assembly, planetary_set
-from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.bodies.springs import Place, Spring, directed
 from fe_drivetrain.dynamics.bodies.static import Static, gaps_and_contacts, static
 from fe_drivetrain.dynamics.bodies.system import System, with_stiffness
@@ -102,7 +102,7 @@ def seat(
 
 
 def planet_seats(
-    machine: Machine,
+    machine: MachineTable,
     number: int,
     bearing: Bearing,
     azimuth: float = 0.0,
@@ -112,7 +112,7 @@ def planet_seats(
 
     Parameters
     ----------
-    machine : Machine
+    machine : MachineTable
         Table of the machine, with the bearings' places under ``pins``.
     number : int
         Number of the planetary stage, from 1.

@@ -301,7 +301,9 @@ def free_motions(equations: Equations) -> Floats:
     values, vectors = linalg.eigh(
         scaled_to_unit_diagonal(equations.extra, equations.mass.diagonal())
     )
-    bent = np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
+    # a free superelement leaves round-off, whose root would be far above that of the springs
+    round_off = len(root) * np.finfo(float).eps * np.abs(values).max(initial=0.0)
+    bent = np.sqrt(np.where(values > round_off, values, 0.0))[:, None] * vectors.T
     whole = np.vstack([wound, bent]) if equations.extra.any() else wound
     _, sizes, basis = np.linalg.svd(whole, full_matrices=True)
     rank = int((sizes > len(root) * 1e-14 * sizes.max(initial=0.0)).sum())

@@ -170,10 +170,12 @@ def on_base(system: System, bodies: Iterable[Body]) -> Floats:
     identity, stands = np.eye(len(system.names)), list(bodies)
     moving = any(body.free == ALL for body in stands)
     rows, rigid = [np.zeros((0, len(identity)))], [np.zeros((0, 6))]
+    # nodes of condensed shafts have their mass in a superelement
+    heavy = {system.bodies[number] for number in system.body_of.tolist()}
     for body in stands:
         moves = system.motion_of(body.name, identity)
         # what is held is part of the base, and what has no inertia does not feel it
-        if moves.any() and (body.mass > 0.0 or body.polar > 0.0):
+        if moves.any() and (body.mass > 0.0 or body.polar > 0.0 or body.name in heavy):
             # a generator that turns alone on its foundation goes along with the base otherwise
             own = moves.any(axis=1) if moving and body.free == TURNS else np.ones(6, dtype=bool)
             rows.append(moves[own])

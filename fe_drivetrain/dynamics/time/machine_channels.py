@@ -14,6 +14,8 @@ from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics.bodies.damping_ratios import element_of, mesh_names
 from fe_drivetrain.dynamics.bodies.equations import CONSTANT
+from fe_drivetrain.dynamics.bodies.flexible import MOUNT, Housing
+from fe_drivetrain.dynamics.bodies.levels import assembly
 from fe_drivetrain.dynamics.bodies.steady_state import wind_up
 from fe_drivetrain.dynamics.bodies.system import bearing_springs
 from fe_drivetrain.dynamics.time.motion import Motion
@@ -27,7 +29,7 @@ UNITS: dict[Kind, str] = {"torque": "N m", "mesh": "N", "bearing": "N", "speed":
 
 @dataclass(frozen=True)
 class Channels:
-    """Channels of a machine that runs, each from forces of springs or from velocities.
+    """Channels of a machine that runs, from forces of springs, displacements or velocities.
 
     Attributes
     ----------
@@ -41,6 +43,8 @@ class Channels:
         where `round` says so.
     rates : Floats
         Weights (c, n) of the velocities.
+    places : Floats
+        Weights (c, n) of the displacements: torques of condensed shafts.
     round : Floats
         Flags (c,), 1 of forces across an axis.
     rated : Floats
@@ -54,19 +58,22 @@ class Channels:
     along: Floats
     across: Floats
     rates: Floats
+    places: Floats
     round: Floats
     rated: Floats
 
     def of(self, motion: Motion) -> Floats:
         """(k, c) values over a motion that recorded all degrees of freedom."""
-        return self._values(motion.forces, motion.velocity)
+        return self._values(motion.forces, motion.q, motion.velocity)
 
-    def _values(self, forces: Floats, velocity: Floats) -> Floats:
+    def _values(self, forces: Floats, q: Floats, velocity: Floats) -> Floats:
         m = self.along.shape[1]
         # springs behind those of the system are laws of the generator
         found = forces[:, :m] @ self.along.T
         both = np.flatnonzero(self.round)
         found[:, both] = np.hypot(found[:, both], forces[:, :m] @ self.across[both].T)
+        if self.places.any():
+            found = found + q @ self.places.T
         return np.asarray(found + velocity @ self.rates.T)
 
     def unit(self, k: int) -> str:
@@ -86,7 +93,7 @@ class _Rows:
     def __init__(self, of: Running) -> None:
         self.springs = list(of.system.spring_names)
         self.n = len(of.system.names)
-        self.rows: list[tuple[str, Kind, Floats, Floats, Floats, float]] = []
+        self.rows: list[tuple[str, Kind, Floats, Floats, Floats, Floats, float]] = []
 
     def add(
         self,
@@ -96,13 +103,14 @@ class _Rows:
         across: Weights = NOTHING,
         rate: Floats | None = None,
         both: bool = False,
+        place: Floats | None = None,
     ) -> None:
-        """Add a channel of springs with weights by their number, or of a velocity."""
+        """Add a channel of springs with weights by their number, or of a velocity or place."""
         first, second = np.zeros(len(self.springs)), np.zeros(len(self.springs))
         for weights, sums in ((along, first), (across, second)):
             sums[list(weights)] = list(weights.values())
-        rates = np.zeros(self.n) if rate is None else rate
-        self.rows.append((name, kind, first, second, rates, float(both)))
+        rates, places = (np.zeros(self.n) if one is None else one for one in (rate, place))
+        self.rows.append((name, kind, first, second, rates, places, float(both)))
 
     def numbers(self, *names: str) -> list[int]:
         """Numbers of springs of these names, those that there are."""
@@ -119,7 +127,10 @@ def machine_channels(of: Running) -> Channels:
         The machine, turning steadily.
     """
     rows, system = _Rows(of), of.system
+    condensed = _condensed_torques(of)
     for shaft in of.machine.shafts:
+        if shaft.name in condensed:
+            rows.add(f"torque of {shaft.name}", "torque", place=condensed[shaft.name])
         found = rows.numbers(f"{shaft.name} rx", f"{shaft.name} element 1 rx")
         if found and system.rows[found].any():
             rows.add(f"torque of {shaft.name}", "torque", dict.fromkeys(found, 1.0))
@@ -131,13 +142,14 @@ def machine_channels(of: Running) -> Channels:
         _add_bearing(rows, of, bearing)
     for body in _turning_bodies(of):
         rows.add(f"speed of {body}", "speed", rate=of.row(body))
-    labels, kinds, along, across, rates, both = zip(*rows.rows, strict=True)
+    labels, kinds, along, across, rates, places, both = zip(*rows.rows, strict=True)
     made = Channels(
         labels,
         kinds,
         np.array(along),
         np.array(across),
         np.array(rates),
+        np.array(places),
         np.array(both),
         np.zeros(len(labels)),
     )
@@ -155,19 +167,35 @@ def _with_rated(made: Channels, of: Running) -> Channels:
     stretch = e.springs.rows @ q
     gap = np.clip(stretch, e.springs.lower, e.springs.upper)
     forces = e.springs.stiffness * (stretch - gap)
-    rated = made._values(forces[None], turning.velocity[None])[0]
+    rated = made._values(forces[None], q[None], turning.velocity[None])[0]
     turned = np.array([kind != "bearing" for kind in made.kinds]) & (rated < 0.0)
     sign = np.where(turned, -1.0, 1.0)
     return replace(
         made,
         along=sign[:, None] * made.along,
         rates=sign[:, None] * made.rates,
+        places=sign[:, None] * made.places,
         rated=np.asarray(sign * rated),
     )
 
 
+def _condensed_torques(of: Running) -> dict[str, Floats]:
+    """(n,) weights of displacements for the torque at the front end of each condensed shaft."""
+    if not of.flexible.shafts:
+        return {}
+    system = of.system
+    built = assembly(of.machine, of.level, flexible=of.flexible)
+    found = {}
+    for element in built.superelements:
+        if element.name in of.flexible.shafts:
+            rows = [6 * system.bodies.index(name) + np.arange(6) for name in element.bodies]
+            moved = system.expansion[np.concatenate(rows)]
+            found[element.name] = np.asarray(element.stiffness[3] @ moved)
+    return found
+
+
 def _bearings(of: Running) -> list[str]:
-    """Names of bearings in the housing, then of those of planets."""
+    """Names of bearings in the housing, of those of planets, and of the gearbox's mount."""
     found = [bearing.name for bearing in of.machine.bearings]
     for number, stage in enumerate(of.machine.stages, start=1):
         if isinstance(stage, PlanetaryData):
@@ -176,7 +204,7 @@ def _bearings(of: Running) -> list[str]:
                 for k in range(stage.planets)
                 for pin in stage.pins
             ]
-    return found
+    return [*found, MOUNT] if isinstance(of.flexible.housing, Housing) else found
 
 
 def _add_bearing(rows: _Rows, of: Running, name: str) -> None:

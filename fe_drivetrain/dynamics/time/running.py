@@ -13,12 +13,15 @@ from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.turning_parts import DampingRatios
 from fe_drivetrain.dynamics.bodies.damping_ratios import (
     ASSUMED_RATIOS,
+    condensed_seconds,
     element_of,
     mesh_names,
     with_damping_ratios,
 )
 from fe_drivetrain.dynamics.bodies.equations import Equations
+from fe_drivetrain.dynamics.bodies.flexible import Flexible, Housing
 from fe_drivetrain.dynamics.bodies.gear_pairs import contact_ratios
+from fe_drivetrain.dynamics.bodies.gearbox_mount import assumed_inertia, mass_inside
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.bodies.meshing import machine_meshing, varying_equations
@@ -27,8 +30,8 @@ from fe_drivetrain.dynamics.bodies.system import System
 from fe_drivetrain.dynamics.time.steady_turning import Turning
 
 LIGHT = 1e-3
-"""Part of a rotor's mass that is left where loads at the hub hold what it takes: its swings on the
-main bearings are then far above what a history resolves."""
+"""Part of a rotor's mass that is left where loads at the hub hold what it takes, and of the mass in
+a housing that it has where none is stated: their swings are then far above what is resolved."""
 
 _ABOUT_AXIS = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0])
 
@@ -43,6 +46,8 @@ class Running:
         Table of the machine, its generator free of any grid.
     level : Level
         What may move.
+    flexible : Flexible
+        What gives beside shafts and bearings, such as the gearbox's housing on its mount.
     system : System
         System with its dampers.
     equations : Equations
@@ -57,6 +62,7 @@ class Running:
 
     machine: Machine
     level: Level
+    flexible: Flexible
     system: System
     equations: Equations
     turning: Turning
@@ -111,6 +117,7 @@ def running(
     backlash: float = 0.0,
     teeth: bool = False,
     hub_loads: bool = False,
+    flexible: Flexible | None = None,
 ) -> Running:
     """A machine that turns steadily at a level.
 
@@ -132,6 +139,10 @@ def running(
     hub_loads : bool
         Whether loads will act that a history has at the hub: they hold what the rotor's mass takes
         already, so that the rotor keeps its polar inertia alone, and its weight.
+    flexible : Flexible, optional
+        What gives beside shafts and bearings. A gearbox housing without mass follows its mount at
+        once; where meshes in it vary or part, it has a thousandth of the mass of what is inside,
+        with which it follows as good as at once.
 
     Raises
     ------
@@ -145,7 +156,10 @@ def running(
         # a wave in each slice would cost the square of their number
         one = tuple(stage.model_copy(update={"slices": 1}) for stage in machine.stages)
         machine = machine.model_copy(update={"stages": one})
-    system = machine_system(machine, level)
+    gives = flexible or Flexible()
+    if teeth or backlash:
+        gives = _with_light_housing(machine, gives)
+    system = machine_system(machine, level, flexible=gives)
     whole = system.gravity(np.array([0.0, 0.0, -GRAVITY]))
     if hub_loads and level is not Level.TORSIONAL:
         system = _light_rotor(machine, system)
@@ -154,12 +168,16 @@ def running(
     equations = varying_equations(system, meshing, rotor_speed, by="angle")
     if backlash:
         equations = _with_backlash(machine, system, equations, backlash)
+    if system.extra.any():
+        condensed = condensed_seconds(machine, damping) * system.extra
+        equations = replace(equations, damping=equations.damping + condensed)
     to_rotor = system.load_on("rotor", _ABOUT_AXIS)
     motion = free_motions(varying_equations(system, {}))[:, 0]
     velocity = rotor_speed * motion / float(to_rotor @ motion)
     return Running(
         machine,
         level,
+        gives,
         system,
         equations,
         Turning(
@@ -172,6 +190,20 @@ def running(
         ),
         GRAVITY * machine.rotor.apart[0],
     )
+
+
+def _with_light_housing(machine: Machine, gives: Flexible) -> Flexible:
+    """What gives, with some mass of a housing without any: springs of its meshes may then change.
+
+    A body without mass is eliminated by the stiffness of the springs on it.
+    """
+    housing = gives.housing
+    if not isinstance(housing, Housing) or housing.mass > 0.0:
+        return gives
+    mass = LIGHT * mass_inside(machine)
+    polar, transverse = assumed_inertia(machine, mass)
+    some = replace(housing, mass=mass, polar=polar, transverse=transverse)
+    return replace(gives, housing=some)
 
 
 def _light_rotor(machine: Machine, system: System) -> System:
