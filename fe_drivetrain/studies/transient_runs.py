@@ -16,6 +16,7 @@ from fe_drivetrain.comparison.in_time import InTime, converge_in_time, peak_betw
 from fe_drivetrain.drivetrain_file.turning_parts import DampingRatios
 from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
+from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.time.integration import transient
 from fe_drivetrain.dynamics.time.machine_channels import Channels, Kind, machine_channels
@@ -229,9 +230,14 @@ class LevelRun:
     coarser: PartDigest | None = field(default=None, repr=False)
 
     @property
+    def level(self) -> Level:
+        """What may move."""
+        return self.rung.level
+
+    @property
     def word(self) -> str:
         """The word that asks for its level; the level's name of a condensed one."""
-        level = self.rung.level
+        level = self.level
         return level.name.lower() if self.rung.name == level.value else self.rung.name
 
 
