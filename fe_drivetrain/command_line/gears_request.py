@@ -16,6 +16,7 @@ from fe_drivetrain.command_line.options import (
     Resume,
     Scheduler,
     Skip,
+    WindSite,
 )
 from fe_drivetrain.command_line.settings import DrivetrainSettings, parse_loads, parse_tolerance
 from fe_drivetrain.common.errors import InputError
@@ -70,15 +71,7 @@ class GearsRequest:
             "with its unit (docs/gear_rating.md).",
         ),
     ] = None
-    site: Annotated[
-        str | None,
-        typer.Option(
-            "--site",
-            metavar="CLASS",
-            help="Weight winds of the files: a class of IEC 61400-1, as in class-II, or the mean "
-            "wind speed of a Rayleigh distribution in m/s. Without it the files repeat for ever.",
-        ),
-    ] = None
+    site: WindSite = None
     hours: Annotated[
         float | None,
         typer.Option(

@@ -39,9 +39,11 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
     from fe_drivetrain.report.suite.case import Case
     from fe_drivetrain.report.suite.result_folders import run_case
     from fe_drivetrain.studies.bearing_lives import DrivetrainBearings, lives_under
+    from fe_drivetrain.studies.life_events import check_events
     from fe_drivetrain.turbine_loads.hub_loads.recorded import recorded_files
 
-    options, place = asked.options(context), asked.place
+    options, place, events = asked.options(context), asked.place, asked.events
+    check_events(found, events)
     files = recorded_files(asked.loads)
     with show_steps() as report, scheduled_by(asked.scheduler):
         # before the run: a mistake leaves no trace in a folder of reports
@@ -49,7 +51,12 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
         drivetrain = DrivetrainBearings(found, options)
         work = Shown(
             lambda run: lives_under(
-                drivetrain, files, place, resume=asked.resume, report=run.report
+                drivetrain,
+                files,
+                place,
+                events=events,
+                resume=asked.resume,
+                report=run.report,
             ),
             show_life,
             write_life,

@@ -25,7 +25,7 @@ def write_life(run: Run, page: Page, result: LifeResult) -> None:
     known = result.all_tables()
     tables: dict[str, list[Record]] = {
         name: known[name]
-        for name in ("lives", "levels", "files", "winds", "places", "laminae")
+        for name in ("lives", "events", "levels", "files", "winds", "places", "laminae")
         if name in known
     }
     facts = {

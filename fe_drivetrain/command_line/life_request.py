@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fe_drivetrain.command_line.options import (
+    BearingEntries,
     Catalogues,
     Channels,
     LoadFiles,
@@ -19,6 +20,7 @@ from fe_drivetrain.command_line.options import (
     SceneName,
     Scheduler,
     Skip,
+    WindSite,
     left_out,
 )
 from fe_drivetrain.command_line.settings import SceneSettings, refuse_again
@@ -35,25 +37,17 @@ class LifeRequest:
 
     scene: SceneName
     loads: LoadFiles
-    site: Annotated[
-        str | None,
-        typer.Option(
-            "--site",
-            metavar="CLASS",
-            help="Weight winds: a class of IEC 61400-1, as in class-II, or the mean wind speed of "
-            "a Rayleigh distribution in m/s. Without it the files repeat for ever.",
-        ),
-    ] = None
-    bearing: Annotated[
+    site: WindSite = None
+    event: Annotated[
         list[str] | None,
         typer.Option(
-            "--bearing",
-            metavar="NAME=ENTRY",
-            help="Entry of the bearing catalogue for a bearing of the drivetrain, before what its "
-            "file says under 'catalogue', as in 'stage 1 pin upwind=planet_nj2232'. May be "
-            "repeated.",
+            "--event",
+            metavar="NAME=COUNT",
+            help="An event of `transient` that comes so many times a year beside the files, as in "
+            "stop=700. May be repeated.",
         ),
     ] = None
+    bearing: BearingEntries = None
     only: Annotated[
         str | None,
         typer.Option("--only", metavar="NAME", help="The one bearing whose life is asked for."),
@@ -179,6 +173,28 @@ class LifeRequest:
         return self.out or Path("reports", "life", Path(self.scene).stem)
 
     @property
+    def events(self) -> dict[str, float]:
+        """How often each event comes in a year.
+
+        Raises
+        ------
+        InputError
+            One has no number, or is given twice.
+        """
+        found: dict[str, float] = {}
+        for text in self.event or ():
+            name, _, count = text.partition("=")
+            try:
+                number = float(count)
+            except ValueError:
+                raise InputError(
+                    f"--event {text}: write NAME=COUNT, as in --event stop=700"
+                ) from None
+            refuse_again("--event", name, found)
+            found[name.strip().replace("-", "_")] = number
+        return found
+
+    @property
     def place(self) -> Site | None:
         """The site whose winds are weighted; None without one."""
         from fe_drivetrain.command_line.option_values import parse_site
@@ -201,7 +217,7 @@ class LifeRequest:
         from fe_drivetrain.command_line.option_values import parse_mapping
 
         return LifeOptions(
-            bearings=_pairs(self.bearing or ()),
+            bearings=bearing_entries(self.bearing or ()),
             only=self.only,
             catalogues=tuple(self.catalogue or ()),
             lubricant=parse_lubricant(self.lubricant),
@@ -243,7 +259,7 @@ def parse_lubricant(text: str) -> str | tuple[float, float]:
     return at_40, at_100
 
 
-def _pairs(texts: Iterable[str]) -> dict[str, str]:
+def bearing_entries(texts: Iterable[str]) -> dict[str, str]:
     """Entries by name of ``--bearing NAME=ENTRY``."""
     found: dict[str, str] = {}
     for text in texts:

@@ -95,6 +95,24 @@ Catalogues = Annotated[
         "--catalogue", metavar="FILE", help="A bearing catalogue of your own. May be repeated."
     ),
 ]
+BearingEntries = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--bearing",
+        metavar="NAME=ENTRY",
+        help="Entry of the bearing catalogue for a bearing of the drivetrain, before what its file "
+        "says under 'catalogue', as in 'stage 1 pin upwind=planet_nj2232'. May be repeated.",
+    ),
+]
+WindSite = Annotated[
+    str | None,
+    typer.Option(
+        "--site",
+        metavar="CLASS",
+        help="Weight winds of the files: a class of IEC 61400-1, as in class-II, or the mean wind "
+        "speed of a Rayleigh distribution in m/s. Without it the files repeat for ever.",
+    ),
+]
 Resume = Annotated[
     bool,
     typer.Option(

@@ -29,6 +29,7 @@ _OF_HISTORIES = {
     "slope": "--slope",
     "resume": "--resume",
     "scheduler": "--scheduler",
+    "site": "--site",
 }
 
 
@@ -55,7 +56,7 @@ def transient_command(context: typer.Context, asked: TransientRequest) -> int:
         require_beside(context, _OF_HISTORIES, "--loads", "is about histories of operation")
     check_result_folder(asked.folder)
     drivetrain = read_drivetrain(asked.drivetrain, parse_settings(asked.set_ or ()))
-    options = asked.options()
+    options, damage = asked.options(), asked.damage()
     work = Shown(
         lambda run: transient(
             drivetrain,
@@ -72,6 +73,7 @@ def transient_command(context: typer.Context, asked: TransientRequest) -> int:
             planets=asked.planets,
             options=options,
             resume=asked.resume,
+            damage=damage,
             report=run.report,
         ),
         show_transient,

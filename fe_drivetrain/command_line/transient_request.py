@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fe_drivetrain.command_line.life_request import bearing_entries
 from fe_drivetrain.command_line.options import (
+    BearingEntries,
+    Catalogues,
     Channels,
     Condensed,
     DrivetrainName,
@@ -17,12 +20,14 @@ from fe_drivetrain.command_line.options import (
     Scheduler,
     Skip,
     Slopes,
+    WindSite,
 )
 from fe_drivetrain.command_line.settings import DrivetrainSettings, Tolerance, parse_settings
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
     from fe_drivetrain.studies.transient_digest import OperationOptions
+    from fe_drivetrain.studies.transient_parts import DamageOptions
 
 EVENTS = ("operation", "stop", "grid-loss", "dip", "run-up", "offset", "base")
 """Events as they are typed."""
@@ -121,9 +126,20 @@ class TransientRequest:
             help="stand at one azimuth, or travel with their carriers, in dip, offset and base.",
         ),
     ] = "stand"
+    rollers: Annotated[
+        bool,
+        typer.Option(
+            "--rollers",
+            help="Bring rollers of all bearings into equilibrium every 5 ms, for L10r, L10mr and "
+            "the largest Hertz pressure. May take minutes.",
+        ),
+    ] = False
+    bearing: BearingEntries = None
+    catalogue: Catalogues = None
     channel: Channels = None
     mapping: Mapping = None
     skip: Skip = 0.0
+    site: WindSite = None
     slope: Slopes = None
     csv: Annotated[
         bool, typer.Option("--csv", help="Write all channels over time as samples.csv, too.")
@@ -192,3 +208,21 @@ class TransientRequest:
             skip=self.skip,
             slopes=tuple(self.slope or SLOPES),
         )
+
+    def damage(self) -> DamageOptions:
+        """How damage of gears and bearings is counted.
+
+        Raises
+        ------
+        InputError
+            An option has another form, or is out of range.
+        """
+        from fe_drivetrain.command_line.option_values import parse_site
+        from fe_drivetrain.studies.life_options import LifeOptions
+        from fe_drivetrain.studies.transient_parts import DamageOptions
+
+        lives = LifeOptions(
+            bearings=bearing_entries(self.bearing or ()), catalogues=tuple(self.catalogue or ())
+        )
+        site = None if self.site is None else parse_site(self.site)
+        return DamageOptions(lives, self.rollers, site)

@@ -15,6 +15,7 @@ from fe_drivetrain.drivetrain_file.turning_parts import (
     Brake,
     DampingRatios,
     GeneratorBody,
+    Limits,
     Operation,
     RotorBody,
     ShaftRow,
@@ -53,6 +54,7 @@ class Drivetrain(Keys):
     generator: GeneratorBody | None = Field(default=None, description="generator's rotor")
     operation: Operation | None = Field(default=None, description="operating range")
     damping: DampingRatios | None = Field(default=None, description="damping of shafts and meshes")
+    limits: Limits | None = Field(default=None, description="limits of torques")
 
     @property
     def states_gears(self) -> bool:
@@ -60,6 +62,10 @@ class Drivetrain(Keys):
         gears = self.gearbox
         return bool(gears.stages or gears.shafts or self.brake or self.generator)
 
-    _bodies = field_validator("rotor", "generator", "brake", "operation", "damping", mode="wrap")(
-        in_its_field
-    )
+    def peak_torque(self, shaft: str) -> float | None:
+        """Limit of the torque of a shaft, by its name [N m]; None where the file states none."""
+        return None if self.limits is None else self.limits.peak_torque.get(shaft)
+
+    _bodies = field_validator(
+        "rotor", "generator", "brake", "operation", "damping", "limits", mode="wrap"
+    )(in_its_field)

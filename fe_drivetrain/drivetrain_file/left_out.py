@@ -54,7 +54,7 @@ _SILENT = frozenset(
         *("title", "mesh", "uncertainty", "materials", "load_points", "parts", "catalogue", "name"),
         *("nose", "stands_on", "source", "smallest_detail", "fillet", "inner_diameter", "held"),
         # what turns beside the main shaft: studies of it state their assumptions themselves
-        *("sources", "assumed", "rotor", "brake", "generator", "operation", "damping"),
+        *("sources", "assumed", "rotor", "brake", "generator", "operation", "damping", "limits"),
         *("stages", "shafts", "bearings"),
     }
 )

@@ -105,6 +105,7 @@ def check_turning(
             f"brake is on shaft {drivetrain.brake.shaft!r}, which is none: use one of "
             f"{', '.join(names)}"
         )
+    _check_limit_names(drivetrain, names)
     if not gears.stages and drivetrain.generator is None:
         return
     try:
@@ -113,6 +114,7 @@ def check_turning(
         return
     check_table(table)
     _check_torque(drivetrain, abs(table.speeds[-1]))
+    _check_limits(drivetrain, table)
 
 
 def _check_torque(drivetrain: Drivetrain, ratio: float) -> None:
@@ -128,6 +130,34 @@ def _check_torque(drivetrain: Drivetrain, ratio: float) -> None:
             f"the ratio {ratio:.4g} of all stages, but operation has {of_power:.4g} N m, its "
             "rated_power over the rated rotor_speed: correct one of them"
         )
+
+
+def _check_limit_names(drivetrain: Drivetrain, names: Sequence[str]) -> None:
+    """Refuse limits of shafts that there are not."""
+    for name in {} if drivetrain.limits is None else drivetrain.limits.peak_torque:
+        if name not in names:
+            raise InputError(
+                f"limits: peak_torque is of shaft {name!r}, which is none: use one of "
+                f"{', '.join(names)}"
+            )
+
+
+def _check_limits(drivetrain: Drivetrain, table: MachineTable) -> None:
+    """Refuse limits that the rated torque is beyond."""
+    generator, rated = drivetrain.generator, None
+    if drivetrain.operation is not None:
+        rated = drivetrain.operation.rated_torque
+    if generator is not None and generator.rated_torque is not None:
+        rated = generator.rated_torque * abs(table.speeds[-1])
+    if drivetrain.limits is None or rated is None:
+        return
+    for shaft, speed in zip(table.shafts, table.speeds, strict=True):
+        limit, torque = drivetrain.peak_torque(shaft.name), rated / abs(speed)
+        if limit is not None and limit < torque:
+            raise InputError(
+                f"limits: peak_torque of shaft {shaft.name!r} is {limit:g} N m but must be at "
+                f"least its rated torque, {torque:.6g} N m: raise it, or correct the rated torque"
+            )
 
 
 def _lacks(drivetrain: Drivetrain, key: str, example: str) -> str:

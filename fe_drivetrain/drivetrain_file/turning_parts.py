@@ -337,6 +337,18 @@ class Brake(Part):
     )
 
 
+Torque = Annotated[float, Field(gt=0, le=1e10)]
+
+
+class Limits(Part):
+    """What a drivetrain must not be loaded beyond."""
+
+    peak_torque: dict[str, Torque] = Field(
+        description="largest torque of shafts by their names, at the shaft, N m: at which a torque "
+        "limiter slips, or which the gearbox is designed for"
+    )
+
+
 class DampingRatios(Part):
     """Damping of all shafts and of all meshes, over critical damping of each by itself."""
 

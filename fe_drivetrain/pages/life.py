@@ -35,6 +35,7 @@ def show_life(run: Run, page: Page, result: LifeResult) -> None:
         What was found.
     """
     _lives(page, result)
+    _events(page, result)
     _limits(page, result)
     _levels(page, result)
     _assumed(page, result)
@@ -85,6 +86,19 @@ def _lives(page: Page, result: LifeResult) -> None:
     if any(np.isfinite(list(life.years.values())).any() for life in result.lives):
         page.add(result.chart())
     _seats(page, result.lives)
+
+
+def _events(page: Page, result: LifeResult) -> None:
+    """Lives with events beside the histories."""
+    if not result.events:
+        return
+    page.section("With events")
+    page.table("Lives with events, and their damage of a year", result.tables["events"])
+    page.text(
+        "Each event is one of `transient`, from rated torque, with flexible shafts and default "
+        "values: its forces bring rollers into equilibrium, and its damage is added as often as it "
+        "comes. The page of `transient` shows it in time."
+    )
 
 
 def _seats(page: Page, lives: Sequence[BearingLife]) -> None:

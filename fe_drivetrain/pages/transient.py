@@ -12,6 +12,7 @@ from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.transient_ladder import QUANTITIES, finest_band
+from fe_drivetrain.studies.transient_parts import damage_chart
 from fe_drivetrain.studies.transient_result import TransientResult
 from fe_drivetrain.studies.transient_tables import spectrum_of
 
@@ -32,6 +33,7 @@ def show_transient(run: Run, page: Page, result: TransientResult) -> None:
     """
     _over_time(page, result)
     _extremes(page, result)
+    _parts(page, result)
     if len(result.runs) > 1:
         _levels(page, result)
     if result.files:
@@ -82,6 +84,34 @@ def _extremes(page: Page, result: TransientResult) -> None:
             "generator's turns",
             result.tables["alternating"],
         )
+
+
+def _parts(page: Page, result: TransientResult) -> None:
+    """Damage and static safety of gears and bearings."""
+    use = result.parts
+    if use is None or not (use.gears or use.bearings):
+        return
+    page.section("Gears and bearings")
+    page.add(damage_chart(use))
+    if use.gears:
+        page.table(
+            f"Teeth: damage each {use.per}, static safety at the peak",
+            result.tables["gear_damage"],
+        )
+    if use.bearings:
+        page.table(
+            f"Bearings: damage each {use.per}, static safety", result.tables["bearing_damage"]
+        )
+    if "file_damage" in result.tables:
+        rows = result.tables["file_damage"]
+        more = f": the first {_SHOWN}" if len(rows) > _SHOWN else ""
+        page.table(f"Damage of each history, once{more}", rows[:_SHOWN])
+    page.text(
+        "Teeth: turns at each torque that the force of the mesh stands for, of its own sign, as in "
+        "a rating by ISO 6336-6; damage with the safety required, static safety without. Bearings: "
+        "loads and speed of the rings in each step, as in a rating life; planets have the mean "
+        "damage of all, and the largest load. Damage of 1 is the end of a life."
+    )
 
 
 def _levels(page: Page, result: TransientResult) -> None:

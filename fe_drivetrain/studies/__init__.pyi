@@ -45,6 +45,7 @@ from .solved_assembly import Assembly as Assembly
 from .solved_assembly import solved_assembly as solved_assembly
 from .study_loads import StudyLoads as StudyLoads
 from .tilt_secants import TiltSecant as TiltSecant
+from .transient_parts import DamageOptions as DamageOptions
 from .transient_result import TransientResult as TransientResult
 from .turning_advice import TurningAdvice as TurningAdvice
 from .turning_advice import advise_turning as advise_turning

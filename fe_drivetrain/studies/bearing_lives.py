@@ -15,7 +15,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fe_drivetrain.bearing_life.life.roller_damage import KINDS, LifeRules
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
+from fe_drivetrain.bearing_life.life.roller_damage import KINDS
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
@@ -38,6 +39,13 @@ from fe_drivetrain.studies.gearbox_bearings import (
 from fe_drivetrain.studies.gearbox_findings import assume_reactions, name_unrated, say_levels
 from fe_drivetrain.studies.life_answer import state_answer
 from fe_drivetrain.studies.life_digest import kept_digest
+from fe_drivetrain.studies.life_events import (
+    LifeEvent,
+    check_events,
+    life_events,
+    state_events,
+    years_with,
+)
 from fe_drivetrain.studies.life_findings import answers, assumptions, cautions, checks
 from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.life_sums import BearingLife, BearingSums
@@ -69,6 +77,8 @@ class LifeResult(Result):
         Choices that change lives.
     not_rated : tuple of str
         Bearings of the drivetrain without a catalogue entry.
+    events : tuple of LifeEvent
+        Events that come beside the histories; `with_events` has lives with them.
     """
 
     STUDY: ClassVar[str] = "life"
@@ -78,6 +88,12 @@ class LifeResult(Result):
     site: Site | None
     rules: LifeRules
     not_rated: tuple[str, ...] = ()
+    events: tuple[LifeEvent, ...] = ()
+
+    @property
+    def with_events(self) -> Mapping[str, Mapping[str, float]]:
+        """Lives [years] of each kind with all events beside the histories, by bearing."""
+        return {life.name: years_with(life, self.events) for life in self.lives}
 
     @property
     def lives(self) -> tuple[BearingLife, ...]:
@@ -116,6 +132,7 @@ def life(
     site: Site | None = None,
     options: LifeOptions | None = None,
     *,
+    events: Mapping[str, float] | None = None,
     resume: bool = False,
     report: Progress = silent,
 ) -> LifeResult:
@@ -132,6 +149,9 @@ def life(
         Whose winds weight the files; without one they repeat for ever.
     options : LifeOptions or None
         Bearings, lubricant, models and how files are read; None takes all defaults.
+    events : Mapping[str, float], optional
+        Events of `transient` that come beside the histories, and how often in a year, as
+        ``{"stop": 700}``.
     resume : bool
         Take what an earlier run of the same program has done with the same files and options.
     report : Progress
@@ -140,14 +160,19 @@ def life(
     Raises
     ------
     InputError
-        The drivetrain has no rolling bearing or an unknown one, a file cannot be read, or a site
-        is given and files have no wind speed.
+        The drivetrain has no rolling bearing or an unknown one, a file cannot be read, a site is
+        given and files have no wind speed, or an event is unknown.
     """
     asked = LifeOptions() if options is None else options
     paths = recorded_files(files)
     report("bearings")
     return lives_under(
-        DrivetrainBearings(drivetrain, asked), paths, site, resume=resume, report=report
+        DrivetrainBearings(drivetrain, asked),
+        paths,
+        site,
+        events=events,
+        resume=resume,
+        report=report,
     )
 
 
@@ -222,6 +247,7 @@ def lives_under(
     files: Sequence[Path],
     site: Site | None,
     *,
+    events: Mapping[str, float] | None = None,
     resume: bool = False,
     report: Progress = silent,
 ) -> LifeResult:
@@ -235,6 +261,8 @@ def lives_under(
         Hub loads, each of one file.
     site : Site or None
         Whose winds weight the files.
+    events : Mapping[str, float], optional
+        Events that come beside the files, and how often in a year.
     resume : bool
         Take what an earlier run has done.
     report : Progress
@@ -243,12 +271,18 @@ def lives_under(
     Raises
     ------
     InputError
-        A file cannot be read, or a site is given and files have no wind speed.
+        A file cannot be read, a site is given and files have no wind speed, or an event is
+        unknown.
     """
+    check_events(drivetrain.drivetrain, events or {})
     found, steps = Findings(), Steps(report)
     asked = drivetrain.options
     found.seed = None
     found.about(drivetrain.drivetrain)
+    happened: tuple[LifeEvent, ...] = ()
+    if events:
+        with steps.step("events"):
+            happened = life_events(drivetrain.drivetrain, asked, events, report)
     with steps.step("load steps"):
         lives = list(_lives(drivetrain, files, site, resume, report))
     machine = drivetrain.machine
@@ -259,7 +293,8 @@ def lives_under(
     assumptions(found, lives, asked)
     assume_reactions(found, lives, machine)
     checks(found, lives)
-    state_answer(found, lives, site, len(machine.unrated))
+    with_events = state_events(found, lives, happened, site)
+    state_answer(found, lives, site, len(machine.unrated), with_events)
     for name, table in result_tables(lives, machine).items():
         found.data(name, table)
     return LifeResult(
@@ -267,7 +302,8 @@ def lives_under(
         site=site,
         rules=asked.rules,
         not_rated=tuple(one.name for one in machine.unrated),
-        **found.frozen(steps.times, **_stated(files, site, asked)),
+        events=happened,
+        **found.frozen(steps.times, events=dict(events or {}), **_stated(files, site, asked)),
     )
 
 

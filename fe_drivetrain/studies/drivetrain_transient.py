@@ -34,7 +34,10 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gearbox_bearings import main_names
 from fe_drivetrain.studies.machine_description import housings_in_words
 from fe_drivetrain.studies.mode_levels import WORDS, named_rung
+from fe_drivetrain.studies.part_damage import PartUse
+from fe_drivetrain.studies.part_loads import NO_PARTS, CountedParts
 from fe_drivetrain.studies.stated_levels import Errors, state_level_errors
+from fe_drivetrain.studies.torque_limits import note_limits, torque_limits
 from fe_drivetrain.studies.transient_digest import (
     FileDigest,
     OperationOptions,
@@ -42,6 +45,7 @@ from fe_drivetrain.studies.transient_digest import (
     driven,
 )
 from fe_drivetrain.studies.transient_findings import (
+    Beside,
     judge_run,
     state_answer,
     state_assumptions,
@@ -56,6 +60,14 @@ from fe_drivetrain.studies.transient_ladder import (
     level_error,
 )
 from fe_drivetrain.studies.transient_loads import design_loads
+from fe_drivetrain.studies.transient_parts import (
+    DAMAGE,
+    DamageOptions,
+    PartQuestion,
+    history_damage_rows,
+    part_question,
+    state_parts,
+)
 from fe_drivetrain.studies.transient_result import TransientResult
 from fe_drivetrain.studies.transient_runs import (
     Extreme,
@@ -108,6 +120,7 @@ def transient(
     planets: str = STAND,
     options: OperationOptions | None = None,
     resume: bool = False,
+    damage: DamageOptions | None = DAMAGE,
     report: Progress = silent,
 ) -> TransientResult:
     """Compute what a drivetrain does in an event, or in operation, by the cheapest level that is
@@ -149,6 +162,8 @@ def transient(
         How histories are read and counted.
     resume : bool
         Take digests of histories that an earlier run kept.
+    damage : DamageOptions or None
+        How damage of gears and bearings is counted; None leaves it out.
     report : Progress
         Called with the name of each step as it begins.
 
@@ -183,6 +198,7 @@ def transient(
         duration,
         step,
         travels(event, planets),
+        part_question(drivetrain, machine, damage),
     )
     if event == OPERATION:
         return _operated(asked, recorded_files(loads), options or OperationOptions(), resume, steps)
@@ -210,6 +226,7 @@ class _Asked:
     duration: float | None
     step: float | None
     travels: bool
+    parts: PartQuestion
 
     def levels(self, possible: Sequence[Level]) -> list[Rung]:
         """Levels to run, of those at which the event can happen."""
@@ -299,9 +316,9 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     made: dict[str, Prepared] = {}
 
     def at(rung: Rung) -> Callable[[float | None], LevelRun]:
-        made[rung.name], run = _at_rung(
-            asked.machine, asked.rated, event, duration, rung, asked.travels
-        )
+        counted, travels = asked.parts.counted, asked.travels
+        found = _at_rung(asked.machine, asked.rated, event, duration, rung, counted, travels)
+        made[rung.name], run = found
         return run
 
     found = _findings(asked)
@@ -311,7 +328,11 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     if torque and asked.event == "stop":
         with steps.step("instants of the brake"):
             instants = by_instant(made[run.rung.name], event, torque, run.step)
-    return _result(asked, found, steps, runs, number, run.extremes, run.samples, {}, {}, instants)
+    with steps.step("gears and bearings"):
+        use = asked.parts.of_event(run, asked.rated.torque)
+    return _result(
+        asked, found, steps, runs, number, run.extremes, run.samples, {}, {}, instants, use
+    )
 
 
 def _at_rung(
@@ -320,17 +341,20 @@ def _at_rung(
     event: Event,
     duration: float,
     rung: Rung,
+    counted: CountedParts,
     planets_travel: bool = False,
 ) -> tuple[Prepared, Callable[[float | None], LevelRun]]:
     """A drivetrain at a level, and its event there with a step; that which it needs for None."""
-    of = Prepared(machine, rung, rated, event.teeth)
+    of = Prepared(machine, rung, rated, event.teeth, parts=counted)
     planned = event.plan(of.of, duration, rated.slip)
     if planets_travel and has_planets(of.of):
         planned = with_travelling_planets(of.of, planned)
     return of, lambda step: of.event(planned, event.step(of.of) if step is None else step)
 
 
-def event_at(drivetrain: Drivetrain, event: str, rung: Rung) -> LevelRun:
+def event_at(
+    drivetrain: Drivetrain, event: str, rung: Rung, counted: CountedParts = NO_PARTS
+) -> LevelRun:
     """An event of a drivetrain at one level, with all defaults, and the bands of its step.
 
     Parameters
@@ -341,6 +365,8 @@ def event_at(drivetrain: Drivetrain, event: str, rung: Rung) -> LevelRun:
         Name of an event, not of operation.
     rung : Rung
         The level, at which the event can happen.
+    counted : CountedParts
+        Bearings whose damage is counted.
 
     Raises
     ------
@@ -350,7 +376,7 @@ def event_at(drivetrain: Drivetrain, event: str, rung: Rung) -> LevelRun:
     machine, rated = machine_of(drivetrain), rated_of(drivetrain)
     happens = event_of(event, _of_file(drivetrain, event))
     duration = happens.lasts(rated.running(machine, RUNGS[0]))
-    _, run = _at_rung(machine, rated, happens, duration, rung)
+    _, run = _at_rung(machine, rated, happens, duration, rung, counted)
     return with_bands(run(None), run)
 
 
@@ -419,7 +445,8 @@ def _operated(
     window = min(options.until or WINDOW, WINDOW, first.seconds)
 
     def at(rung: Rung) -> Callable[[float | None], LevelRun]:
-        of = Prepared(asked.machine, rung, asked.rated, hub_loads=first.has_all)
+        counted = asked.parts.counted
+        of = Prepared(asked.machine, rung, asked.rated, hub_loads=first.has_all, parts=counted)
         moving = operation(of.of, first, asked.rated.slip)
         return lambda step: of.window(moving, options.step if step is None else step, window)
 
@@ -428,9 +455,19 @@ def _operated(
     rung = runs[number].rung
     names = [short_name(path, files) for path in files]
     with steps.step("files"):
-        of = Prepared(asked.machine, rung, asked.rated, hub_loads=first.has_all)
+        counted = asked.parts.counted
+        of = Prepared(asked.machine, rung, asked.rated, hub_loads=first.has_all, parts=counted)
         begun, samples = driven(of, first, options)
-        rest = digests(files[1:], asked.machine, rung, asked.rated, options, resume, steps.report)
+        rest = digests(
+            files[1:],
+            asked.machine,
+            rung,
+            asked.rated,
+            options,
+            resume,
+            steps.report,
+            counted,
+        )
         of_files = dict(zip(names, [begun, *rest], strict=True))
     extremes = over_files(of_files, runs[number])
     more = {
@@ -441,7 +478,11 @@ def _operated(
     found.data("equivalent_loads", equivalent_rows(of_files, extremes, options.slopes))
     found.data("duration_spectra", spectrum_rows(of_files, extremes))
     found.data("files", digest_rows(of_files, extremes))
-    return _result(asked, found, steps, runs, number, extremes, samples, of_files, more)
+    with steps.step("gears and bearings"):
+        use = asked.parts.of_operation(of_files, files, runs[number], asked.rated.torque)
+    if use is not None and (use.gears or use.bearings):
+        found.data("file_damage", history_damage_rows(use, names))
+    return _result(asked, found, steps, runs, number, extremes, samples, of_files, more, None, use)
 
 
 def _findings(asked: _Asked) -> Findings:
@@ -466,14 +507,15 @@ def _result(
     samples: Samples,
     files: Mapping[str, FileDigest],
     more: Mapping[str, Any],
-    instants: ByInstant | None = None,
+    instants: ByInstant | None,
+    use: PartUse | None,
 ) -> TransientResult:
     """State what was found, and freeze it."""
     run = runs[number]
     kinds = [kind for kind in QUANTITIES if any(e.kind == kind for e in extremes.values())]
     errors = tuple(tuple(level_error(one, runs[-1], kind) for kind in kinds) for one in runs)
     imbalance = max([run.imbalance, *(one.imbalance for one in files.values())])
-    found.data("extremes", extreme_rows(extremes))
+    found.data("extremes", extreme_rows(extremes, torque_limits(asked.drivetrain, extremes)))
     found.data("levels", level_rows(runs, errors, number))
     of_kinds = {
         QUANTITIES[kind]: Errors([of[k].error for of in errors], finest_band(runs, kind))
@@ -495,8 +537,13 @@ def _result(
             f"Swings hardly decay: the first mode's damping ratio is {percent_text(damping)} by "
             "the ratios of each shaft and mesh between its own two bodies."
         )
-    state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity, instants)
+    limits = torque_limits(asked.drivetrain, extremes)
+    note_limits(found, limits, extremes)
+    beside = Beside(instants, use, limits)
+    state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity, beside)
     found.note(housings_in_words(run.rung, asked.machine))
+    if use is not None:
+        state_parts(found, use, asked.parts, run.rung.level)
     return TransientResult(
         event=asked.event,
         level=run.word,
@@ -510,5 +557,6 @@ def _result(
         samples=samples,
         files=files,
         by_instant=instants,
+        parts=use,
         **found.frozen(steps.times, **{**asked.plain(), **more}),
     )

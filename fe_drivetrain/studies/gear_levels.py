@@ -116,7 +116,8 @@ class LoadSpread:
             return {name: self._by_formula(name, size) for name in self._planets}
         loads = self._responses.under(size, hub)
         return {
-            name: self._by_statics(name, size, loads.azimuths, forces)
+            # teeth do not pull: what does by round-off of a planet without load has no root
+            name: self._by_statics(name, size, loads.azimuths, np.maximum(forces, 0.0))
             for name, forces in loads.slices.items()
         }
 

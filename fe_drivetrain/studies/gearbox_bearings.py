@@ -128,7 +128,7 @@ def machine_bearings(
     main = main_names(machine)
     names = [n for n in models[LEVELS[-1]].names if n not in on_rollers]
     names = [*(n for n in names if n in main), *(n for n in names if n not in main)]
-    _require_bearings((*on_rollers, *names), entries, choices.only)
+    require_bearings((*on_rollers, *names), entries, choices.only)
     known = read_bearing_catalogue(*choices.catalogues)
     rated, unrated = [], []
     for name in names:
@@ -138,7 +138,7 @@ def machine_bearings(
         if name not in entries:
             unrated.append(Unrated(name, here[LEVELS[-1]].speed_ratio))
         else:
-            entry = _entry(name, entries[name], known)
+            entry = entry_of(name, entries[name], known)
             made = _Maker(name, entries[name], entry, choices)
             rated.append(made.bearing(models[LEVELS[-1]], here, None if name in main else oil))
     degrees = {level.value: model.degrees for level, model in models.items()}
@@ -280,7 +280,7 @@ class _Maker:
         return ReactionPath(self.name, rated, of.by_hub, weight, of.speed_ratio)
 
 
-def _entry(name: str, entry: str, known: Mapping[str, Entry]) -> Entry:
+def entry_of(name: str, entry: str, known: Mapping[str, Entry]) -> Entry:
     """The entry of a bearing."""
     if entry not in known:
         raise InputError(
@@ -290,7 +290,7 @@ def _entry(name: str, entry: str, known: Mapping[str, Entry]) -> Entry:
     return known[entry]
 
 
-def _require_bearings(names: Sequence[str], entries: Mapping[str, str], only: str | None) -> None:
+def require_bearings(names: Sequence[str], entries: Mapping[str, str], only: str | None) -> None:
     """Refuse names of bearings that there are not, and to ask for one that cannot be rated."""
     known = f"name one of {', '.join(names)}"
     for name in entries:

@@ -21,7 +21,11 @@ _STANDARD = "ISO 76"
 
 
 def state_answer(
-    found: Findings, lives: Sequence[BearingLife], site: Site | None, unrated: int = 0
+    found: Findings,
+    lives: Sequence[BearingLife],
+    site: Site | None,
+    unrated: int = 0,
+    with_events: Sequence[KeyFigure] = (),
 ) -> None:
     """State the shortest life; a bearing that cannot be used comes before it.
 
@@ -35,6 +39,8 @@ def state_answer(
         Whose winds are weighted, and whose years are asked for.
     unrated : int
         Number of other bearings, which have no catalogue entry.
+    with_events : sequence of KeyFigure
+        The shortest life with events, where they are asked for.
     """
     by_life = sorted(lives, key=lambda life: life.years["L10mr"])
     shortest, weakest = by_life[0], hardest_loaded(lives)
@@ -49,7 +55,7 @@ def state_answer(
         among = f"{len(lives)}{' rated' if unrated else ''}"
         verdict = _lives(shortest, years[shortest.name], site, len(lives), safety, among)
         figures = [*[*years.values()][:_SHOWN], pressure, safety]
-    figures = figures[: _SHOWN + 2]
+    figures = [*with_events, *figures][: _SHOWN + 2]
     if shortest.site is not None:
         covered = 100.0 * shortest.site.covered
         figures.append(found.value("time whose winds the files have [%]", covered))

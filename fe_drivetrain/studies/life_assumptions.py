@@ -15,9 +15,10 @@ import numpy as np
 
 from fe_drivetrain.bearing.geometry import Bearing, max_clearance
 from fe_drivetrain.bearing_life.coupled.reaction_paths import ReactionPath
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.lubricants import GRADES, SUPPLIES
 from fe_drivetrain.bearing_life.life.rated import RatedBearing
-from fe_drivetrain.bearing_life.life.roller_damage import LifeRules, damage_of_steps
+from fe_drivetrain.bearing_life.life.roller_damage import damage_of_steps
 from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.studies.rolling_bearings import PROFILE, Choices, OneBearing

@@ -11,8 +11,9 @@ import numpy as np
 from fe_drivetrain.bearing.answers import race_pressures
 from fe_drivetrain.bearing.geometry import RollerRow
 from fe_drivetrain.bearing_life.coupled.reaction_paths import ReactionPath
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.limits import check_speed
-from fe_drivetrain.bearing_life.life.roller_damage import Damage, LifeRules, damage_of_steps
+from fe_drivetrain.bearing_life.life.roller_damage import Damage, damage_of_steps
 from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats, chunks

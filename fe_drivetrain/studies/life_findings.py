@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.limits import centrifugal_load
 from fe_drivetrain.bearing_life.life.lubricants import Lubricant
 from fe_drivetrain.bearing_life.life.reference_life import RINGS
-from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.procedure.failure_modes import BEARING_RATING, TORQUE_AND_BENDING

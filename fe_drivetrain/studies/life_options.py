@@ -12,9 +12,9 @@ from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.studies.history_options import HistoryOptions
 
 if TYPE_CHECKING:
+    from fe_drivetrain.bearing_life.life.life_rules import LifeRules
     from fe_drivetrain.bearing_life.life.lubricants import Lubricant, Supply
     from fe_drivetrain.bearing_life.life.reference_life import Turning
-    from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
     from fe_drivetrain.drivetrain_file.turning_parts import Operation
     from fe_drivetrain.studies.life_digest import Reading
     from fe_drivetrain.studies.rolling_bearings import Choices, Oil
@@ -117,7 +117,7 @@ class LifeOptions(HistoryOptions):
     @property
     def rules(self) -> LifeRules:
         """Choices that change the life of a bearing under given loads of its rollers."""
-        from fe_drivetrain.bearing_life.life.roller_damage import RELIABILITY, LifeRules
+        from fe_drivetrain.bearing_life.life.life_rules import RELIABILITY, LifeRules
 
         if self.reliability_percent not in RELIABILITY:
             known = ", ".join(f"{value:g}" for value in RELIABILITY)

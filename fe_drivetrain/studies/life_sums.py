@@ -10,8 +10,9 @@ import numpy as np
 
 from fe_drivetrain.bearing.geometry import Row
 from fe_drivetrain.bearing_life.life.at_site import SiteLife, site_lives
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.limits import Limits
-from fe_drivetrain.bearing_life.life.roller_damage import KINDS, Damage, LifeRules
+from fe_drivetrain.bearing_life.life.roller_damage import KINDS, Damage
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.studies.life_assumptions import Assumption, what_ifs

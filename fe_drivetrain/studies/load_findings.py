@@ -24,6 +24,7 @@ from fe_drivetrain.studies.load_records import (
 from fe_drivetrain.studies.load_totals import LoadTotals
 from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, winds_not_used
 from fe_drivetrain.studies.shown_units import in_large_unit, shown_unit
+from fe_drivetrain.studies.torque_limits import BY
 from fe_drivetrain.studies.unused import speed_not_used
 from fe_drivetrain.turbine_loads.histories.level_sums import POWER
 from fe_drivetrain.turbine_loads.histories.sets import CHANCE
@@ -117,7 +118,12 @@ def _equivalent(found: Findings, hub: LoadTotals, options: LoadOptions) -> None:
     )
 
 
-def state_answer(found: Findings, hub: LoadTotals, comparison: Comparison | None) -> None:
+def state_answer(
+    found: Findings,
+    hub: LoadTotals,
+    comparison: Comparison | None,
+    limit: float | None = None,
+) -> None:
     """State extremes and equivalent loads at the hub, or how two sets differ.
 
     Parameters
@@ -128,11 +134,13 @@ def state_answer(found: Findings, hub: LoadTotals, comparison: Comparison | None
         Hub loads of all files.
     comparison : Comparison or None
         The files beside another set, where one is given.
+    limit : float or None
+        Limit of the torque, where a drivetrain's file states it [N m].
     """
     figures = [
         *(found.judged(one.quantity) for one in found.figures),
         *(
-            found.value(*_extreme(hub, load, name))
+            _peak(found, hub, load, name, limit)
             for load, name in _PEAKS.items()
             if load in hub.loads
         ),
@@ -142,9 +150,9 @@ def state_answer(found: Findings, hub: LoadTotals, comparison: Comparison | None
     if comparison is not None:
         _answer_of_two(found, figures, comparison)
     elif hub.loads == ("Mx",):
-        _answer_of_torque(found, hub)
+        _answer_of_torque(found, hub, limit)
     elif hub.absent:
-        _answer_of_some(found, hub)
+        _answer_of_some(found, hub, limit)
     else:
         fatigue = "no moment has a cycle"
         if found.figures:
@@ -156,14 +164,14 @@ def state_answer(found: Findings, hub: LoadTotals, comparison: Comparison | None
         )
 
 
-def _answer_of_torque(found: Findings, hub: LoadTotals) -> None:
+def _answer_of_torque(found: Findings, hub: LoadTotals, limit: float | None) -> None:
     """State extremes, mean and equivalents of a torque that is there alone."""
     mean, deviation = (hub.statistics.overall[CHANNELS.index("Mx"), k] / 1e3 for k in (1, 3))
     torque = hub.torque
     over = "time", torque.equivalent_over_time(hub.files.seconds)
     if torque.equivalent_over_turns is not None:
         over = "turns", torque.equivalent_over_turns
-    peak, average = found.value(*_extreme(hub, "Mx", "peak torque Mx")), "mean torque [kN m]"
+    peak, average = _peak(found, hub, "Mx", "peak torque Mx", limit), "mean torque [kN m]"
     figures = [
         peak,
         found.value(average, float(mean)),
@@ -187,11 +195,11 @@ def _answer_of_torque(found: Findings, hub: LoadTotals) -> None:
     )
 
 
-def _answer_of_some(found: Findings, hub: LoadTotals) -> None:
+def _answer_of_some(found: Findings, hub: LoadTotals, limit: float | None) -> None:
     """State extremes and equivalent loads of the components that are there."""
     named = [name for name in FORCES if name in hub.loads]
     peaks = {
-        load: found.value(*_extreme(hub, load, name))
+        load: _peak(found, hub, load, name, limit)
         for load, name in (
             _PEAKS | {name: f"peak {name}" for name in named if name not in _PEAKS}
         ).items()
@@ -223,6 +231,17 @@ def _answer_of_two(found: Findings, figures: Sequence[KeyFigure], comparison: Co
         f"of seeds; {chance:.2g} would by chance.",
         [found.value(name, beyond, beside=chance, by="by chance"), *figures[:3]],
     )
+
+
+def _peak(
+    found: Findings, hub: LoadTotals, channel: str, name: str, limit: float | None
+) -> KeyFigure:
+    """The value of a load that is farthest from zero; of the torque with its limit [N m]."""
+    quantity, value = _extreme(hub, channel, name)
+    if channel != "Mx" or limit is None:
+        return found.value(quantity, value)
+    most, _ = in_large_unit(limit, UNIT_OF[channel])
+    return found.value(quantity, value, between=(-most, most), by=BY)
 
 
 def _extreme(hub: LoadTotals, channel: str, name: str) -> tuple[str, float]:

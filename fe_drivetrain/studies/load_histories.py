@@ -39,6 +39,7 @@ from fe_drivetrain.studies.load_totals import EquivalentLoad, LoadSums, LoadTota
 from fe_drivetrain.studies.load_winds import Capture, CaptureTarget, captured
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import shown_unit
+from fe_drivetrain.studies.torque_limits import limit_of_histories
 from fe_drivetrain.turbine_loads.histories.sites import Site, require_winds
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
 
@@ -284,7 +285,8 @@ def _counted(asked: _Asked, steps: Steps) -> LoadsResult:
     of_events = [] if life is None else [one.own_speeds for one in life.events]
     note_unused_speed(found, options, [sums.hub.files.own_speeds, *of_events, its.own_speeds])
     check_classes(found, sums.hub)
-    state_answer(found, sums.hub, comparison)
+    limit = limit_of_histories(scene, sums.hub.files.torque_of)
+    state_answer(found, sums.hub, comparison, limit)
     return LoadsResult(
         asked=options,
         hub=sums.hub,

@@ -14,10 +14,10 @@ from fe_drivetrain.bearing.races import Races
 from fe_drivetrain.bearing_life.coupled.load_paths import PINNED, LoadPath
 from fe_drivetrain.bearing_life.coupled.of_scene import scene_body
 from fe_drivetrain.bearing_life.coupled.reaction_paths import ReactionPath
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.lubricants import Lubricant
 from fe_drivetrain.bearing_life.life.rated import RatedBearing, rated_from_catalogue
 from fe_drivetrain.bearing_life.life.reference_life import Turning
-from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
 from fe_drivetrain.bearing_life.life.roller_models import (
     RollerModel,
     flexible_rings,
@@ -167,10 +167,25 @@ class OneBearing:
 
     def rules(self, asked: LifeRules) -> LifeRules:
         """Choices that change the life of this bearing, from those that are asked for."""
-        found = asked if self.turning is None else replace(asked, turning=self.turning)
-        if self.oil is None or asked.lubricant is None:
-            return found
-        return replace(found, lubricant=self.oil.lubricant)
+        return own_rules(asked, self.turning, self.oil)
+
+
+def own_rules(asked: LifeRules, turning: Turning | None, oil: Oil | None) -> LifeRules:
+    """Choices that change the life of a bearing, from those that are asked for.
+
+    Parameters
+    ----------
+    asked : LifeRules
+        Asked for, of all bearings.
+    turning : {"inner", "outer"} or None
+        The ring that turns against the load, where the drivetrain says so.
+    oil : Oil or None
+        The oil of a gearbox's bearing.
+    """
+    found = asked if turning is None else replace(asked, turning=turning)
+    if oil is None or asked.lubricant is None:
+        return found
+    return replace(found, lubricant=oil.lubricant)
 
 
 def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:

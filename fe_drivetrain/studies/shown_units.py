@@ -86,6 +86,13 @@ def quantity_in_words(name: str) -> str:
     if where == "modes":
         kind, _, number = what.partition(".")
         return f"{'torsional frequency' if kind == 'torsional' else 'frequency'} {number}"
+    if where == "life":
+        part, _, kind = what.rpartition(".")
+        return f"{kind} of {part} at rated torque"
+    if where == "transient" and not what.endswith(".peak"):
+        event, _, rest = what.partition(".")
+        part, _, kind = rest.rpartition(".")
+        return f"{kind} of {part} ({event.replace('_', ' ')})"
     if where == "transient":
         event, _, channel = what.removesuffix(".peak").partition(".")
         return f"peak {channel} ({event.replace('_', ' ')})"

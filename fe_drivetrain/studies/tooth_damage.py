@@ -37,7 +37,7 @@ class FlankDamage:
         all see the same.
     contact_safety, root_safety : float or None
         Factor on all stresses with which the spectrum just brings failure (ISO 6336-6); None of a
-        root that is not rated.
+        root that is not rated, NaN where they were not asked for.
     """
 
     damage: ToothDamage
@@ -98,6 +98,7 @@ def mesh_damage(
     spectrum: TorqueSpectrum,
     spreads: Sequence[Spread],
     application: float,
+    factors: bool = True,
 ) -> dict[str, FlankDamage]:
     """Damage of both flanks of a mesh.
 
@@ -111,6 +112,8 @@ def mesh_damage(
         How the mesh spreads its load in each class.
     application : float
         K_A; 1 of a spectrum that has the loads of the machine in it.
+    factors : bool
+        Whether factors that just bring failure are asked for, which takes most of the time.
 
     Returns
     -------
@@ -137,11 +140,13 @@ def mesh_damage(
             bent = roots[:, number, None, None, None] * share * face**stresses.root_exponent
             of_root = _Loading(bent, counts, curve, forward, ring)
         required = strength.contact_safety, strength.root_safety
-        found[flank.name] = _damage(of_flank, of_root, required)
+        found[flank.name] = _damage(of_flank, of_root, required, factors)
     return found
 
 
-def _damage(flank: _Loading, root: _Loading | None, required: tuple[float, float]) -> FlankDamage:
+def _damage(
+    flank: _Loading, root: _Loading | None, required: tuple[float, float], factors: bool
+) -> FlankDamage:
     places = flank.by_place(required[0], flank.forward)
     teeth = places.sum(axis=1)
     tooth, place = np.unravel_index(int(np.argmax(teeth)), teeth.shape)
@@ -157,8 +162,8 @@ def _damage(flank: _Loading, root: _Loading | None, required: tuple[float, float
         teeth[tooth],
         places[tooth, :, place],
         teeth.max(axis=1) if flank.ring else np.zeros(0),
-        flank.safety(),
-        None if root is None else root.safety(),
+        flank.safety() if factors else np.nan,
+        None if root is None else root.safety() if factors else np.nan,
     )
 
 

@@ -20,6 +20,7 @@ from fe_drivetrain.dynamics.time.machine_channels import Channels
 from fe_drivetrain.procedure.drivetrain_operation import EnergyAccount, operation
 from fe_drivetrain.report.seal import drivetrain_hash
 from fe_drivetrain.studies.history_options import HistoryOptions
+from fe_drivetrain.studies.part_loads import NO_PARTS, CountedParts, PartDigest
 from fe_drivetrain.studies.transient_runs import REVERSAL, SMALL, Prepared, Rated, Samples
 from fe_drivetrain.turbine_loads.histories.classes import Classes
 from fe_drivetrain.turbine_loads.histories.damage import FREQUENCY, SLOPES
@@ -109,6 +110,10 @@ class FileDigest:
         1 where the generator had the torque of the file; 0 where it had a line of slip.
     absent : str
         Loads that the file does not have.
+    parts : PartDigest or None
+        What it did to gears and bearings.
+    wind : float
+        Mean wind speed [m/s]; NaN where the file has none.
     """
 
     seconds: float
@@ -118,6 +123,8 @@ class FileDigest:
     speed_against_file: float
     own_generator: float
     absent: str = ""
+    parts: PartDigest | None = None
+    wind: float = np.nan
 
     def equivalent(self, name: str, k: int, slope: float) -> float:
         """Damage-equivalent range of a channel at the reference frequency, of slope number k."""
@@ -216,7 +223,7 @@ def driven(
     channels, rated = prepared.channels, prepared.rated
     moving = operation(prepared.of, history, rated.slip)
     sums = _sums(channels, tuple(asked.slopes))
-    account, against = EnergyAccount(), _Against(history)
+    account, against, counter = EnergyAccount(), _Against(history), prepared.reader.counter(history)
     first = next((k for k, kind in enumerate(channels.kinds) if kind == "torque"), None)
     rotor = channels.names.index("speed of rotor")
     until = None if asked.until is None else float(history.time[0]) + asked.until
@@ -226,8 +233,9 @@ def driven(
     seen = 0
     for part in moving.pieces(asked.step, until):
         account.add(part)
-        begin = 1 if seen else 0
-        times, values = part.times[begin:], channels.of(part)[begin:]
+        begin, values = 1 if seen else 0, channels.of(part)
+        counter.add(part, values)
+        times, values = part.times[begin:], values[begin:]
         for one, column in zip(sums, values.T, strict=True):
             one.add(times, column)
         if first is not None:
@@ -243,6 +251,8 @@ def driven(
         against.speed / rated.rotor_speed,
         float(history.generator_torque is not None),
         ", ".join(history.absent),
+        counter.digest(),
+        history.wind,
     )
     units = tuple(channels.unit(k) for k in range(len(channels.names)))
     times = np.concatenate([t for t, _ in shown])
@@ -269,6 +279,7 @@ def kept_digest(
     rated: Rated,
     asked: OperationOptions,
     resume: bool,
+    parts: CountedParts = NO_PARTS,
 ) -> FileDigest:
     """The digest of a file, or that of an earlier run where it is kept and asked for.
 
@@ -288,26 +299,33 @@ def kept_digest(
         How histories are read and counted.
     resume : bool
         Take what is kept.
+    parts : CountedParts
+        Bearings whose damage is counted.
 
     Raises
     ------
     InputError
         The file cannot be read.
     """
-    cache, content = user_cache(), _content(file, machine, rung, rated, asked)
+    cache, content = user_cache(), _content(file, machine, rung, rated, asked, parts)
     if resume:
         kept = cache.load_record("load-digests", content, FileDigest)
         if kept is not None:
             return kept
     history = read_drive(file, asked.names, asked.skip)
-    prepared = Prepared(machine, rung, rated, hub_loads=history.has_all)
+    prepared = Prepared(machine, rung, rated, hub_loads=history.has_all, parts=parts)
     found, _ = driven(prepared, history, asked)
     cache.keep_record("load-digests", content, found)
     return found
 
 
 def _content(
-    file: Path, machine: Machine, rung: Rung, rated: Rated, asked: OperationOptions
+    file: Path,
+    machine: Machine,
+    rung: Rung,
+    rated: Rated,
+    asked: OperationOptions,
+    parts: CountedParts,
 ) -> dict[str, Any]:
     """All that the digest of a file depends on: what is in the file counts, not its name."""
     return {
@@ -323,6 +341,7 @@ def _content(
         "slopes": [float(slope) for slope in asked.slopes],
         "step": asked.step,
         "until": asked.until,
+        "parts": parts.content,
     }
 
 
@@ -347,6 +366,7 @@ def digests(
     asked: OperationOptions,
     resume: bool,
     report: Progress,
+    parts: CountedParts = NO_PARTS,
 ) -> Iterator[FileDigest]:
     """Digests file by file, several at a time where there are cores; each kept once it is done.
 
@@ -366,8 +386,10 @@ def digests(
         Take digests that an earlier run kept.
     report : Progress
         Called with the number of each file.
+    parts : CountedParts
+        Bearings whose damage is counted.
     """
-    items = ((file, machine, rung, rated, asked, resume) for file in files)
+    items = ((file, machine, rung, rated, asked, resume, parts) for file in files)
     made = mapped(kept_digest, items, len(files) if len(files) >= _MANY else 1, report)
     for number in range(1, len(files) + 1):
         report(f"files ({number} of {len(files)})")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import dataclass, field, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +22,8 @@ from fe_drivetrain.report.number_text import certain_value, percent_text, value_
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.machine_description import assume_housings
+from fe_drivetrain.studies.part_damage import PartUse
+from fe_drivetrain.studies.torque_limits import BY, hardest_limit, limit_figure
 from fe_drivetrain.studies.transient_digest import FileDigest
 from fe_drivetrain.studies.transient_instants import ByInstant
 from fe_drivetrain.studies.transient_ladder import (
@@ -31,6 +33,7 @@ from fe_drivetrain.studies.transient_ladder import (
     level_error,
 )
 from fe_drivetrain.studies.transient_loads import ExtremeLoads
+from fe_drivetrain.studies.transient_parts import part_figures
 from fe_drivetrain.studies.transient_runs import Extreme, LevelRun, Rated, telling_torque
 from fe_drivetrain.studies.transient_tables import (
     alternating_rows,
@@ -251,6 +254,25 @@ def _channels(which: Sequence[object]) -> str:
     return f"{len(which)} channel{'s' * (len(which) > 1)}"
 
 
+@dataclass(frozen=True)
+class Beside:
+    """What stands beside extremes in an answer.
+
+    Attributes
+    ----------
+    instants : ByInstant or None
+        Peak of a stop by the instant of its brake.
+    use : PartUse or None
+        What it does to gears and bearings.
+    limits : Mapping[str, float]
+        Limits of torques, by channel [N m].
+    """
+
+    instants: ByInstant | None = None
+    use: PartUse | None = None
+    limits: Mapping[str, float] = field(default_factory=dict)
+
+
 class _Answered(NamedTuple):
     """What an answer is made of."""
 
@@ -317,7 +339,7 @@ def state_answer(
     number: int,
     files: Mapping[str, FileDigest],
     quantity: Kind,
-    instants: ByInstant | None = None,
+    beside: Beside,
 ) -> None:
     """State what the event does, with the level that it needs.
 
@@ -339,23 +361,40 @@ def state_answer(
         What happened over each history.
     quantity : str
         For which the level has to be enough.
-    instants : ByInstant, optional
-        Peak of a stop by the instant of its brake.
+    beside : Beside
+        Instants of the brake, damage of gears and bearings, limits of torques.
     """
     of = _Answered(found, extremes, run)
     verdict, figures = _VERDICTS[event](of, files)
-    if instants is not None:
-        low, high = min(instants.peaks), max(instants.peaks)
-        found.say(
-            f"By the instant of the brake within {instants.period:.3g} s, a period of the first "
-            f"mode, the {instants.channel} comes to {low:.2f} to {high:.2f} of rated after it."
-        )
-        name = f"largest {instants.channel} by the instant of the brake, over rated"
-        figures.insert(2, found.value(name, high))
+    if beside.instants is not None:
+        figures.insert(2, _by_instant(found, of, beside.instants, beside.limits))
     if len(runs) > 1:
         error = level_error(runs[number], runs[-1], quantity).error
         _say_level(found, runs, number, quantity, error)
-    found.answer(QUESTIONS[event], verdict, figures[:6], cautions=_cautions(event, run, files))
+    last = [*limit_figure(found, beside.limits, extremes), *part_figures(found, beside.use)]
+    shown = [*figures[: 6 - len(last)], *last]
+    hardest = hardest_limit(beside.limits, extremes)
+    if hardest is not None and extremes[hardest].largest > beside.limits[hardest]:
+        shaft = hardest.removeprefix("torque of ")
+        verdict = f"{verdict.removesuffix('.')}, beyond the limit of the {shaft}."
+    found.answer(QUESTIONS[event], verdict, shown, cautions=_cautions(event, run, files))
+
+
+def _by_instant(
+    found: Findings, of: _Answered, instants: ByInstant, limits: Mapping[str, float]
+) -> KeyFigure:
+    """The largest peak by the instant of the brake, with the limit of its shaft."""
+    low, high = min(instants.peaks), max(instants.peaks)
+    found.say(
+        f"By the instant of the brake within {instants.period:.3g} s, a period of the first "
+        f"mode, the {instants.channel} comes to {low:.2f} to {high:.2f} of rated after it."
+    )
+    name = f"largest {instants.channel} by the instant of the brake, over rated"
+    limit = limits.get(instants.channel)
+    if limit is None:
+        return found.value(name, high)
+    rated = abs(of.extremes[instants.channel].rated)
+    return found.value(name, high, at_most=limit / rated, by=BY)
 
 
 def _say_level(
@@ -375,13 +414,16 @@ def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> lis
     """What limits the verdict, most severe first."""
     said = []
     if event == "stop":
-        said.append("Peaks are of one instant of the brake within a swing of the first mode.")
+        said.append(
+            "Peaks and damage are of one instant of the brake within a swing of the first mode."
+        )
     if event in ("stop", "grid_loss", "dip"):
         said.append("Times and controls of the event, where not stated, are assumptions.")
     if event == "dip":
         said.append("The generator's torque follows the table at any speed, without damping.")
     if event == "run_up":
         said.append("Meshes vary as square waves of their contact ratio, without tip relief.")
+        said.append("Damage of teeth has K_v beside vibrations of meshes that are in the forces.")
     absent = sorted({one.absent for one in files.values() if one.absent})
     if absent:
         said.append(f"Histories have no {' and no '.join(absent)}: their torque acts alone.")

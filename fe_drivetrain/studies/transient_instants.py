@@ -66,7 +66,7 @@ def by_instant(of: Prepared, event: Event, channel: str, step: float) -> ByInsta
         braked = event.braked + late
         end = max(braked + event.rise + AFTER * period, event.pitched + 1e-3)
         planned = replace(event, braked=braked).plan(of.of, end, of.rated.slip)
-        run = of.event(planned, step)
+        run = of.event(planned, step, counts=False)
         after = run.samples.times >= braked
         peaks.append(peak_between(run.samples.values[after, k]) / float(of.channels.rated[k]))
     return ByInstant(channel, period, delays, tuple(np.asarray(peaks).tolist()))

@@ -11,6 +11,7 @@ import numpy as np
 from fe_drivetrain.dynamics.time.machine_channels import Kind, of_planet
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
+from fe_drivetrain.studies.part_damage import PartUse
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.transient_digest import FileDigest
 from fe_drivetrain.studies.transient_instants import ByInstant
@@ -51,6 +52,9 @@ class TransientResult(Result):
         What it did over each history, by its name; empty of an event.
     by_instant : ByInstant or None
         Peak of the last shaft's torque by the instant of the brake of a stop.
+    parts : PartUse or None
+        What it does to gears and bearings, of an event once, of operation in a year; None where
+        that was not asked for.
     """
 
     STUDY: ClassVar[str] = "transient"
@@ -68,6 +72,7 @@ class TransientResult(Result):
     samples: Samples = field(repr=False)
     files: Mapping[str, FileDigest]
     by_instant: ByInstant | None
+    parts: PartUse | None = None
 
     @property
     def chosen(self) -> LevelRun:

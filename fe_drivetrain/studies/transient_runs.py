@@ -24,6 +24,7 @@ from fe_drivetrain.dynamics.time.running import Running, running
 from fe_drivetrain.procedure.drivetrain_events import SLIP, Planned
 from fe_drivetrain.procedure.drivetrain_operation import EnergyAccount, Operation
 from fe_drivetrain.procedure.travelling_planets import with_turning
+from fe_drivetrain.studies.part_loads import NO_PARTS, CountedParts, PartDigest, PartReader
 from fe_drivetrain.turbine_loads.histories.levels import torque_reversals
 
 REVERSAL = 0.01
@@ -238,6 +239,10 @@ class LevelRun:
         Angle (k,) of the generator [rad].
     planets_travel : bool
         Whether planets are where their carrier is; else they stand at one azimuth.
+    parts : PartDigest or None
+        What it did to gears and bearings, where that was counted.
+    coarser : PartDigest or None
+        The same with twice the step, where that was run.
     """
 
     __repr__ = short_repr
@@ -253,6 +258,8 @@ class LevelRun:
     converged: bool
     angle: Floats = field(repr=False)
     planets_travel: bool = False
+    parts: PartDigest | None = field(default=None, repr=False)
+    coarser: PartDigest | None = field(default=None, repr=False)
 
     @property
     def level(self) -> Level:
@@ -281,6 +288,8 @@ class Prepared:
         Whether the stiffness of meshes varies as teeth pass.
     hub_loads : bool
         Whether loads of a history act at the hub, see `running`.
+    parts : CountedParts
+        Bearings whose damage is counted beside that of the gears.
     """
 
     def __init__(
@@ -290,14 +299,16 @@ class Prepared:
         rated: Rated,
         teeth: bool = False,
         hub_loads: bool = False,
+        parts: CountedParts = NO_PARTS,
     ) -> None:
         begin = perf_counter()
         self.rated, self.rung = rated, rung
         self.of = rated.running(machine, rung, teeth, hub_loads)
         self.channels = machine_channels(self.of)
+        self.reader = PartReader(self.of, self.channels, parts)
         self.seconds = perf_counter() - begin
 
-    def event(self, planned: Planned, step: float) -> LevelRun:
+    def event(self, planned: Planned, step: float, counts: bool = True) -> LevelRun:
         """One event with a step.
 
         Parameters
@@ -306,6 +317,8 @@ class Prepared:
             Its phases.
         step : float
             Step [s].
+        counts : bool
+            Whether damage of gears and bearings is counted.
         """
         begin = perf_counter()
         motion = transient(planned.phases, step, planned.start)
@@ -316,16 +329,21 @@ class Prepared:
         stands = [t for t, what in motion.braking.events if what == "sticks"]
         if stands:
             marks["disc stands"] = stands[0]
+        values = self.channels.of(motion)
+        counter = self.reader.counter()
+        if counts:
+            counter.add(motion, values)
         run = self._run(
             begin,
             step,
-            (motion.times, self.channels.of(motion)),
+            (motion.times, values),
             marks,
             motion.relative_imbalance,
             motion.converged,
             np.asarray(motion.q @ self.of.turning.to_generator),
         )
-        return replace(run, planets_travel=travels)
+        run = replace(run, planets_travel=travels)
+        return replace(run, parts=counter.digest()) if counts else run
 
     def window(self, moving: Operation, step: float, window: float) -> LevelRun:
         """The beginning of a history.
@@ -337,15 +355,17 @@ class Prepared:
         step, window : float
             Step, and how much of the history [s].
         """
-        begin, account = perf_counter(), EnergyAccount()
+        begin, account, counter = perf_counter(), EnergyAccount(), self.reader.counter()
         parts: list[tuple[Floats, Floats]] = []
         for part in moving.pieces(step, moving.start.time + window):
             account.add(part)
-            first = 1 if parts else 0
-            parts.append((part.times[first:], self.channels.of(part)[first:]))
+            first, values = 1 if parts else 0, self.channels.of(part)
+            counter.add(part, values)
+            parts.append((part.times[first:], values[first:]))
         found = np.concatenate([t for t, _ in parts]), np.concatenate([v for _, v in parts])
         nowhere = account.relative_imbalance
-        return self._run(begin, step, found, {}, nowhere, True, np.zeros(len(found[0])))
+        run = self._run(begin, step, found, {}, nowhere, True, np.zeros(len(found[0])))
+        return replace(run, parts=counter.digest())
 
     def _run(
         self,
@@ -420,8 +440,12 @@ def with_bands(run: LevelRun, again: Callable[[float], LevelRun]) -> LevelRun:
         Makes the same run with another step [s].
     """
 
+    longer: dict[float, LevelRun] = {}
+
     def once(step: float, _: int) -> InTime:
-        one = again(step) if step > 1.5 * run.step else run
+        one = run
+        if step > 1.5 * run.step:
+            one = longer[step] = again(step)
         values = {}
         for name in run.extremes:
             at = one.samples.of(name)
@@ -438,4 +462,4 @@ def with_bands(run: LevelRun, again: Callable[[float], LevelRun]) -> LevelRun:
         )
         for name, one in run.extremes.items()
     }
-    return replace(run, extremes=extremes)
+    return replace(run, extremes=extremes, coarser=longer[min(longer)].parts)

@@ -28,8 +28,10 @@ def in_shown_unit(value: float, unit: str) -> tuple[float, str]:
     return value / size, name
 
 
-def extreme_rows(extremes: Mapping[str, Extreme]) -> list[Record]:
-    """A row for each channel."""
+def extreme_rows(
+    extremes: Mapping[str, Extreme], limits: Mapping[str, float] | None = None
+) -> list[Record]:
+    """A row for each channel; of torques with their limits, where there are any."""
     rows: list[Record] = []
     for name, one in extremes.items():
         unit, size = _SHOWN[one.unit]
@@ -47,6 +49,10 @@ def extreme_rows(extremes: Mapping[str, Extreme]) -> list[Record]:
             "least over rated": one.least_over_rated,
             "reversals": one.reversals,
         }
+        if limits and one.kind == "torque":
+            limit = limits.get(name)
+            row["limit"] = None if limit is None else limit / size
+            row["peak over its limit"] = None if limit is None else one.largest / limit
         rows.append(row | ({"file": one.file} if one.file else {}))
     return rows
 

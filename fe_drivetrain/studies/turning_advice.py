@@ -23,11 +23,8 @@ from fe_drivetrain.studies.machine_description import assume_housings
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
 from fe_drivetrain.studies.stated_levels import Errors, state_level_errors
-from fe_drivetrain.studies.turning_quantities import (
-    TurningModel,
-    TurningQuantity,
-    turning_quantity,
-)
+from fe_drivetrain.studies.turning_model import TurningModel, TurningQuantity
+from fe_drivetrain.studies.turning_quantities import turning_quantity
 
 
 @dataclass(frozen=True)

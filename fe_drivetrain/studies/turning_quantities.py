@@ -3,29 +3,24 @@
 ``modes.torsional.1`` is the first torsional frequency, ``modes.frequency.3`` the third of all,
 ``gears.stage 1 sun-planet.sharing`` the load of the most loaded planet over the mean,
 ``gears.stage 3 mesh.K_Hbeta`` that along the face, ``gears.stage 3 pinion.S_H`` a safety factor,
-``transient.stop.force of stage 3 mesh.peak`` the largest force of a mesh in an emergency stop.
-Each is asked of a drivetrain at a rung of its ladder.
+``transient.stop.force of stage 3 mesh.peak`` the largest force of a mesh in an emergency stop,
+``transient.stop.stage 3 mesh.damage`` what that does to its teeth, ``transient.stop.PLC-A.S0`` the
+static safety of a bearing, ``life.PLC-A.L10mr`` its life at rated torque. Each is asked of a
+drivetrain at a rung of its ladder.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
-from functools import cached_property
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.near_words import did_you_mean
-from fe_drivetrain.common.short_repr import short_repr
-from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics import (
-    Asked,
     Level,
     Machine,
-    Operation,
-    Rung,
     like_mode,
     machine_of,
     plain_rungs,
@@ -36,148 +31,21 @@ from fe_drivetrain.dynamics.bodies.mesh_loads import mesh_springs
 from fe_drivetrain.dynamics.time.machine_channels import UNITS, machine_channels
 from fe_drivetrain.dynamics.torsion.system import natural_modes
 from fe_drivetrain.procedure.drivetrain_events import EVENTS
-from fe_drivetrain.studies.drivetrain_transient import event_at, rated_of
-from fe_drivetrain.studies.gear_answers import GearAnswer, MeshAnswer
-from fe_drivetrain.studies.gear_loads import GearLoading, loads_of
+from fe_drivetrain.studies.drivetrain_transient import rated_of
+from fe_drivetrain.studies.gear_loads import GearLoading
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_ratings import prepared
-from fe_drivetrain.studies.gear_stresses import MeshStresses
 from fe_drivetrain.studies.mode_levels import BANDED, element_bands
-from fe_drivetrain.studies.rated_gears import GearRating
-from fe_drivetrain.studies.tooth_damage import gear_damage
-from fe_drivetrain.studies.transient_runs import Extreme
+from fe_drivetrain.studies.part_quantities import part_quantities
+from fe_drivetrain.studies.turning_model import TurningModel, TurningQuantity
 
 FIRST = "modes.torsional.1"
 """What is asked for where nothing is, of a main shaft without sections."""
-STUDIES = ("modes", "gears", "transient")
+STUDIES = ("modes", "gears", "transient", "life")
 """Studies whose quantities have a name, the first part of it."""
 _FREQUENCIES = 16
 """Number of the first frequencies that have a name, of drivetrains with all motions."""
 _NO_LOADS = GearLoading((), None, None, None, False)
-
-
-class TurningModel:
-    """A drivetrain at a rung of its ladder; what several quantities need is solved once.
-
-    Parameters
-    ----------
-    drivetrain : Drivetrain
-        The drivetrain.
-    rung : Rung
-        Level, and what gives.
-    reference : Asked or None
-        Machine at the finest level, whose modes give numbered frequencies their number; None for
-        those of this model.
-    """
-
-    def __init__(self, drivetrain: Drivetrain, rung: Rung, reference: Asked | None = None) -> None:
-        self.drivetrain, self.rung = drivetrain, rung
-        self._reference = reference
-        self._events: dict[str, Mapping[str, Extreme]] = {}
-
-    @cached_property
-    def machine(self) -> Machine:
-        """The machine."""
-        return machine_of(self.drivetrain)
-
-    @cached_property
-    def asked(self) -> Asked:
-        """The machine at this rung, its generator free to turn."""
-        return Asked(self.machine, self.rung, Operation(0.0))
-
-    @property
-    def reference(self) -> Asked:
-        """Machine whose modes give numbered frequencies their number."""
-        return self.asked if self._reference is None else self._reference
-
-    @cached_property
-    def rating(self) -> GearRating:
-        """Rating of the gears under the reference torque for the life asked for."""
-        options = GearOptions()
-        train, meshes, _ = prepared(self.drivetrain, None, options, _NO_LOADS)
-        stresses = {name: MeshStresses(one, train.conditions) for name, one in meshes.items()}
-        steps = Steps()
-        return GearRating(
-            train, options, stresses, loads_of(train, options, _NO_LOADS, steps.report), steps
-        )
-
-    @cached_property
-    def meshes(self) -> dict[str, MeshAnswer]:
-        """Each mesh at the reference torque."""
-        return self.rating.mesh_answers(self.rating.spread_at(self.rung))
-
-    @cached_property
-    def gears(self) -> dict[str, GearAnswer]:
-        """Each flank at the reference torque."""
-        return self.rating.gear_answers(self.meshes, {})
-
-    @cached_property
-    def damage(self) -> dict[str, float]:
-        """Damage of each flank in the hours of the life asked for, the larger of face and root."""
-        made, _ = self.rating, self.meshes  # the spread of the loads is that of the meshes
-        rated = {name: one for name, one in made.stresses.items() if one.rated}
-        if made.given.spectrum is None or not rated:
-            return {}
-        application = {name: made.application(name) for name in rated}
-        found = gear_damage(rated, made.given.spectrum, made.chosen, application)
-        return {name: one.damage.largest for name, one in found.items()}
-
-    def damage_band(self, flank: str) -> float:
-        """Numerical uncertainty of the damage of a flank, by coarser spreads of the loads."""
-        made, _ = self.rating, self.meshes
-        return made.damage()[flank][1].damage
-
-    def peak(self, event: str, channel: str) -> Extreme | None:
-        """Extremes of a channel in an event; None where this level does not have them."""
-        if self.rung.level not in EVENTS[event].levels:
-            return None
-        if event not in self._events:
-            self._events[event] = event_at(self.drivetrain, event, self.rung).extremes
-        return self._events[event].get(channel)
-
-
-@dataclass(frozen=True)
-class TurningQuantity:
-    """A number of all that turns.
-
-    Attributes
-    ----------
-    name, unit : str
-        Name, and unit of the value; "-" without one.
-    of : callable
-        Its value of a `TurningModel`; None where the model's level has none.
-    own : callable
-        Numerical uncertainty of the value [unit]; NaN where it is not known.
-    """
-
-    name: str
-    unit: str
-    of: Callable[[TurningModel], float | None]
-    own: Callable[[TurningModel], float]
-
-    @property
-    def numbered(self) -> bool:
-        """Whether it is a frequency by the number of its mode at the finest level."""
-        return self.name.startswith("modes.frequency.")
-
-    __repr__ = short_repr
-
-    def value(self, model: TurningModel) -> float:
-        """Its value.
-
-        Raises
-        ------
-        InputError
-            The model has none: its level neglects what it needs, or no mode moves like the one
-            asked for.
-        """
-        found = self.of(model)
-        if found is None:
-            raise InputError(
-                f"{self.name} has no value at the level {model.rung.name!r} of "
-                f"{model.drivetrain.title!r}: ask for another level, or for another quantity"
-            )
-        return found
 
 
 def is_turning(name: str, drivetrain: Drivetrain) -> bool:
@@ -249,7 +117,7 @@ def turning_quantities(drivetrain: Drivetrain) -> dict[str, TurningQuantity]:
     found = [_torsional(number) for number in range(1, count + 1)]
     every = count if machine.not_given else _FREQUENCIES
     found += [_frequency(number) for number in range(1, every + 1)]
-    for quantities in (_of_gears, _of_events):
+    for quantities in (_of_gears, _of_events, part_quantities):
         with suppress(InputError):  # without gears, a torque or a speed: none of these
             found += quantities(drivetrain, machine)
     return {one.name: one for one in found}
@@ -329,7 +197,11 @@ def _shortened(names: Sequence[str]) -> list[str]:
         of = [name for name in names if name.startswith(f"modes.{kind}.")]
         shown += of if len(of) < 3 else [f"{of[0]} to {of[-1]}"]
     shown += [name for name in names if name.startswith("gears.")]
-    peaks = [name.split(".", 2)[1:] for name in names if name.startswith("transient.")]
+    shown += [name for name in names if name.startswith("life.") and name.endswith(".L10mr")]
+    of_parts = [one.split(".", 2) for one in names if one.endswith((".damage", ".S0"))]
+    parts = dict.fromkeys(one[2] for one in of_parts if one[0] == "transient")
+    shown += [f"transient.EVENT.{one}" for one in parts]
+    peaks = [n.split(".", 2)[1:] for n in names if n.startswith("transient.") and ".peak" in n]
     if peaks:
         events, channels = (list(dict.fromkeys(part)) for part in zip(*peaks, strict=True))
         shown.append(

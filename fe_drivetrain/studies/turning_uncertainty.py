@@ -20,11 +20,8 @@ from fe_drivetrain.shafts.uncertainty.sampling import (
 )
 from fe_drivetrain.studies.mode_levels import named_level
 from fe_drivetrain.studies.turning_advice import TurningLadder, finest_modes, turning_ladder
-from fe_drivetrain.studies.turning_quantities import (
-    TurningModel,
-    TurningQuantity,
-    turning_quantity,
-)
+from fe_drivetrain.studies.turning_model import TurningModel, TurningQuantity
+from fe_drivetrain.studies.turning_quantities import turning_quantity
 
 
 @dataclass(frozen=True)

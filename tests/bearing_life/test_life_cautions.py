@@ -11,9 +11,9 @@ from answer_rules import broken_rules
 from tiny_case import Result
 
 from fe_drivetrain.bearing.catalogue import catalogue_entry
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.lubricants import GRADES, Lubricant
 from fe_drivetrain.bearing_life.life.modified_life import viscosity
-from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.reading import library_scene

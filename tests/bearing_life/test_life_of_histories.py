@@ -20,6 +20,7 @@ from fe_drivetrain.bearing.rolling import equilibrium
 from fe_drivetrain.bearing_life.coupled.load_paths import PINNED, LoadPath, damage_of_hub_loads
 from fe_drivetrain.bearing_life.coupled.of_scene import scene_body
 from fe_drivetrain.bearing_life.life.at_site import site_lives
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.limits import centrifugal_load, check_speed, static_use
 from fe_drivetrain.bearing_life.life.load_series import equivalent_life
 from fe_drivetrain.bearing_life.life.lubricants import SUPPLIES, Lubricant, contamination_factor
@@ -43,7 +44,6 @@ from fe_drivetrain.bearing_life.life.reference_life import (
 )
 from fe_drivetrain.bearing_life.life.roller_damage import (
     Damage,
-    LifeRules,
     damage_of_history,
     damage_of_steps,
     step_lives,

@@ -14,6 +14,7 @@ from fe_drivetrain.bearing.arrangements import (
 )
 from fe_drivetrain.bearing.geometry import BallRow, Bearing
 from fe_drivetrain.bearing.rating import ball_dynamic_rating, ratings
+from fe_drivetrain.bearing_life.life.life_rules import RELIABILITY, LifeRules
 from fe_drivetrain.bearing_life.life.lubricants import SUPPLIES, Lubricant, contamination_factor
 from fe_drivetrain.bearing_life.life.modified_life import life_factor
 from fe_drivetrain.bearing_life.life.rated import (
@@ -27,7 +28,7 @@ from fe_drivetrain.bearing_life.life.rated import (
     rated_bearing,
 )
 from fe_drivetrain.bearing_life.life.reference_life import ball_capacities
-from fe_drivetrain.bearing_life.life.roller_damage import RELIABILITY, LifeRules, damage_of_steps
+from fe_drivetrain.bearing_life.life.roller_damage import damage_of_steps
 from fe_drivetrain.bearing_life.life.steps import Steps
 
 OIL = Lubricant(100.0, 11.0, 50.0, "oil bath", "-/15/12")

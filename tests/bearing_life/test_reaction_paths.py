@@ -14,8 +14,9 @@ from fe_drivetrain.bearing_life.coupled.reaction_paths import (
     damage_of_forces,
     one_sided,
 )
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.rated import rated_bearing
-from fe_drivetrain.bearing_life.life.roller_damage import LifeRules, damage_of_history
+from fe_drivetrain.bearing_life.life.roller_damage import damage_of_history
 from fe_drivetrain.common.errors import InputError
 
 PLANET = rated_bearing(cylindrical("planet", 16, 0.04, 0.05, 0.225, laminae=10), 1e6, 1.2e6, 1.5e5)

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 from tiny_case import Result
 
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.load_series import years
-from fe_drivetrain.bearing_life.life.roller_damage import LifeRules, step_lives
+from fe_drivetrain.bearing_life.life.roller_damage import step_lives
 from fe_drivetrain.command_line.life_request import parse_lubricant
 from fe_drivetrain.command_line.option_names import result_with_options
 from fe_drivetrain.common.array_records import as_arrays

@@ -200,6 +200,15 @@ def changed(name: str, change: dict[str, Any]) -> dict[str, Any]:
     [
         ({"gearbox.shafts": []}, "3 stages and 0 shafts behind the main shaft"),
         ({"brake": {"shaft": "LLS", "torque": 1e4}}, "brake is on shaft 'LLS', which is none: use"),
+        (
+            {"limits": {"peak_torque": {"X": 1e9}}},
+            "peak_torque is of shaft 'X', which is none",
+        ),
+        (
+            {"limits": {"peak_torque": {"HSS": 10.0}}},
+            "'HSS' is 10 N m but must be at least its",
+        ),
+        ({"limits": {"peak_torque": {"HSS": -1.0}}}, "limits"),
         ({"gearbox.bearings.0.holds": "stage 9 carrier"}, "which is no shaft or body"),
         ({"gearbox.stages.0.teeth.ring": 60}, "stage 1 .*: a centre distance of"),
         ({"gearbox.bearings.0.stiffness": [[1e9] * 6] * 5}, "stiffness"),

@@ -17,7 +17,7 @@ from fe_drivetrain.bearing_life.coupled.load_paths import LoadPath, damage_of_hu
 from fe_drivetrain.bearing_life.coupled.newton import coupled_equilibrium
 from fe_drivetrain.bearing_life.coupled.of_scene import scene_body
 from fe_drivetrain.bearing_life.coupled.springs import on_springs, stiffness_loop
-from fe_drivetrain.bearing_life.life.roller_damage import LifeRules
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.rings.assembly import RollerAssembly, assembly_equilibrium
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError

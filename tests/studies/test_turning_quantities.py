@@ -18,11 +18,8 @@ from fe_drivetrain.shafts.uncertainty import sensitivities
 from fe_drivetrain.studies import advise_turning, compare, gears, transient, uncertainty
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.turning_advice import turning_ladder
-from fe_drivetrain.studies.turning_quantities import (
-    TurningModel,
-    turning_quantities,
-    turning_quantity,
-)
+from fe_drivetrain.studies.turning_model import TurningModel
+from fe_drivetrain.studies.turning_quantities import turning_quantities, turning_quantity
 
 ROTOR, GENERATOR, SHAFT = 4e6, 9e5, 2e8  # kg m^2, kg m^2, N m/rad
 FREQUENCY = math.sqrt(SHAFT * (1.0 / ROTOR + 1.0 / GENERATOR)) / (2.0 * math.pi)

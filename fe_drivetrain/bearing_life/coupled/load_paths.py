@@ -12,8 +12,9 @@ from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.bearing_life.coupled.body import LinearBody, factors_of
 from fe_drivetrain.bearing_life.coupled.newton import coupled_equilibrium
 from fe_drivetrain.bearing_life.coupled.springs import on_springs, tilt_springs
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.rated import RatedBearing
-from fe_drivetrain.bearing_life.life.roller_damage import Damage, LifeRules, damage_of_history
+from fe_drivetrain.bearing_life.life.roller_damage import Damage, damage_of_history
 from fe_drivetrain.bearing_life.life.roller_models import CHUNK, RollerModel, balanced, rigid_rings
 from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arrays import Bools, Floats, chunks

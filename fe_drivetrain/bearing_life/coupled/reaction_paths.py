@@ -13,8 +13,9 @@ from numpy.typing import ArrayLike
 from fe_drivetrain.bearing.distribution import effective_centre
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.bearing.rolling import free_motions
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.rated import RatedBearing, of_geometry
-from fe_drivetrain.bearing_life.life.roller_damage import Damage, LifeRules, damage_of_history
+from fe_drivetrain.bearing_life.life.roller_damage import Damage, damage_of_history
 from fe_drivetrain.bearing_life.life.roller_models import (
     CHUNK,
     RollerModel,

@@ -1,5 +1,7 @@
 from .at_site import SiteLife as SiteLife
 from .at_site import site_lives as site_lives
+from .life_rules import RELIABILITY as RELIABILITY
+from .life_rules import LifeRules as LifeRules
 from .limits import Limits as Limits
 from .limits import check_speed as check_speed
 from .limits import static_use as static_use
@@ -36,9 +38,7 @@ from .reference_life import row_loads as row_loads
 from .reference_life import rows_of as rows_of
 from .reference_life import stress_riser as stress_riser
 from .roller_damage import KINDS as KINDS
-from .roller_damage import RELIABILITY as RELIABILITY
 from .roller_damage import Damage as Damage
-from .roller_damage import LifeRules as LifeRules
 from .roller_damage import damage_of_history as damage_of_history
 from .roller_damage import damage_of_steps as damage_of_steps
 from .roller_damage import step_lives as step_lives
@@ -49,4 +49,6 @@ from .roller_models import rigid_rings as rigid_rings
 from .roller_models import steps_of as steps_of
 from .roller_models import three_degree_rings as three_degree_rings
 from .roller_models import with_laminae as with_laminae
+from .standard_damage import StandardDamage as StandardDamage
+from .standard_damage import standard_damage as standard_damage
 from .steps import Steps as Steps

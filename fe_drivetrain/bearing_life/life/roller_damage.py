@@ -11,7 +11,7 @@ Steps come in chunks and only sums are kept: memory does not grow with the lengt
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -19,22 +19,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.geometry import BallRow
-from fe_drivetrain.bearing.rating import LAMBDA
-from fe_drivetrain.bearing_life.life.limits import Limits, check_speed, limits_of
-from fe_drivetrain.bearing_life.life.lubricants import Lubricant
-from fe_drivetrain.bearing_life.life.modified_life import MIX, life_factor
+from fe_drivetrain.bearing_life.life.life_rules import LifeRules
+from fe_drivetrain.bearing_life.life.limits import Limits, limits_of
+from fe_drivetrain.bearing_life.life.modified_life import MIX
 from fe_drivetrain.bearing_life.life.rated import RatedBearing
 from fe_drivetrain.bearing_life.life.reference_life import (
     LINE,
     POINT_SLOPE,
-    RINGS,
     SLOPE,
     TURNING,
-    Turning,
     ball_capacities,
     race_capacities,
     stress_riser,
 )
+from fe_drivetrain.bearing_life.life.standard_damage import spent_by
 from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError, require_known
@@ -42,68 +40,6 @@ from fe_drivetrain.common.short_repr import short_repr
 
 KINDS = ("L10", "L10m", "L10r", "L10mr")
 """Basic and modified life of ISO 281; basic and modified reference life of ISO/TS 16281."""
-
-RELIABILITY = {
-    90.0: 1.0,
-    95.0: 0.64,
-    96.0: 0.55,
-    97.0: 0.47,
-    98.0: 0.37,
-    99.0: 0.25,
-    99.5: 0.175,
-    99.9: 0.093,
-}
-"""a_1 by reliability [%] (ISO 281, table 12, as public code has it)."""
-
-STANDING = 0.1
-"""Below this speed [1/min] a bearing stands: no life is computed, its time is counted apart."""
-
-
-@dataclass(frozen=True)
-class LifeRules:
-    """Choices that change lives.
-
-    Attributes
-    ----------
-    lubricant : Lubricant or None
-        None leaves modified lives out: they are equal to the basic ones.
-    riser : {"standard", "none"}
-        Stress at the ends of rollers: the function of ISO/TS 16281, or none, for rollers whose
-        profile takes it away. With both a straight roller and the function the ends count twice,
-        with neither not at all.
-    edge : float or None
-        Reduction for edge stress in C that is taken out again, lambda nu; where None, 0.83 with the
-        standard's riser and 1 without, see `race_capacities`.
-    turning : {"inner", "outer"}
-        The ring that turns against the load.
-    reliability : float
-        a_1 of ISO 281: 1 at 90 %, 0.64 at 95, 0.25 at 99.
-    limit_per_row : bool
-        The fatigue limit that a row's load meets is C_u over the number of rows; else the whole.
-    standing_rpm : float
-        Speed below which the bearing stands [1/min].
-    """
-
-    lubricant: Lubricant | None = None
-    riser: Literal["standard", "none"] = "standard"
-    edge: float | None = None
-    turning: Turning = "inner"
-    reliability: float = 1.0
-    limit_per_row: bool = True
-    standing_rpm: float = STANDING
-
-    def __post_init__(self) -> None:
-        require_known("stress riser", self.riser, ("standard", "none"))
-        require_known("the ring that turns", self.turning, RINGS)
-        if not 0.0 < self.reliability <= 1.0:
-            raise InputError(f"a_1 is {self.reliability:g}: give more than 0, and 1 at most")
-
-    @property
-    def reduction(self) -> float:
-        """Lambda nu that is taken out of C."""
-        if self.edge is not None:
-            return self.edge
-        return LAMBDA if self.riser == "standard" else 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -280,12 +216,10 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
     InputError
         No such bearing turns as fast, see `check_speed`.
     """
-    check_speed(rated, steps.speed_rpm)
     slope = _slope(rated)
-    speed = np.abs(steps.speed_rpm)
-    runs = (speed >= rules.standing_rpm) & steps.converged
-    turns = np.where(runs, speed * steps.seconds / 60.0, 0.0)
-    kappa, factor = _lubrication(rated, rules, np.maximum(speed, max(rules.standing_rpm, 1e-3)))
+    P = rated.equivalent_load(steps.loads)
+    spent = spent_by(rated, P, steps.speed_rpm, steps.seconds, rules, steps.converged)
+    turns, kappa, factor = spent.turns, spent.kappa, spent.factor
     found = [_row_risks(rated, r, q, rules) for r, q in enumerate(steps.laminae)]
     a_iso = [factor(row.P) for _, row in found]
     basic_risks = [risk for risk, _ in found]
@@ -307,10 +241,6 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
         alone.append(
             [[million @ risk[i].sum(axis=1) ** (1 / slope) for i in (0, 1)] for risk in risks]
         )
-    P = rated.equivalent_load(steps.loads)
-    used = 1e-6 * turns * (P / rated.dynamic) ** rated.exponent
-    a_whole = factor(P[:, None] * (1 if not rules.limit_per_row else 1.0 / len(rated.bearing.rows)))
-    standard = np.array([used.sum(), (used / a_whole[:, 0]).sum() / rules.reliability])
     risk = np.sum([risk.sum(axis=(0, 2)) for risk in basic_risks], axis=0)
     limits = limits_of(steps, rated, rules.standing_rpm, kappa, P, risk)
     return Damage(
@@ -318,7 +248,7 @@ def damage_of_steps(steps: Steps, rated: RatedBearing, rules: LifeRules) -> Dama
         float(turns.sum()),
         parts[0],
         parts[1],
-        standard,
+        spent.standard,
         np.array(of_bearing),
         np.array(alone),
         limits,
@@ -424,22 +354,3 @@ def _by_place(rate: Floats, risk: Floats, row: _Row, ring: int) -> Floats:
     """(elements, laminae): sum over steps of a rate (n,) times risks (n, laminae), by place."""
     weights = rate[:, None] * risk * row.over_sums[ring]
     return np.asarray(np.einsum("nk,njk->jk", weights, row.powers[ring]))
-
-
-def _lubrication(
-    rated: RatedBearing, rules: LifeRules, speed: Floats
-) -> tuple[Floats, Callable[[Floats], Floats]]:
-    """Viscosity ratio of each step, and a_ISO of loads (n, m) of rows."""
-    if rules.lubricant is None:
-        return np.full(len(speed), np.nan), np.ones_like
-    kappa = rules.lubricant.kappa(speed, rated.pitch_diameter)
-    e_C = rules.lubricant.contamination(kappa, rated.pitch_diameter)
-    rows = len(rated.bearing.rows) if rules.limit_per_row else 1
-    contact: Literal["line", "point"] = "point" if rated.balls else "line"
-
-    def factor(P: Floats) -> Floats:
-        with np.errstate(divide="ignore"):
-            ratio = (e_C * rated.fatigue / rows)[:, None] / P
-        return life_factor(ratio, kappa[:, None], contact)
-
-    return kappa, factor

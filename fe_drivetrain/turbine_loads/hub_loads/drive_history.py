@@ -47,6 +47,8 @@ class DriveHistory:
         Torque of the generator against its motion [N m].
     generator_speed : ndarray, (n,) or None
         [rad/s].
+    wind : float
+        Mean wind speed [m/s]; NaN where it was not recorded.
     """
 
     name: str
@@ -56,6 +58,7 @@ class DriveHistory:
     rotor_speed: Floats | None
     generator_torque: Floats | None
     generator_speed: Floats | None
+    wind: float = np.nan
 
     __repr__ = short_repr
 
@@ -121,4 +124,5 @@ def read_drive(path: Path, mapping: ChannelMap = OWN_NAMES, skip: float = 0.0) -
         recorded.rotor_speed,
         of_generator.get(TORQUE),
         of_generator.get(SPEED),
+        np.nan if recorded.wind_speed is None else float(recorded.wind_speed.mean()),
     )

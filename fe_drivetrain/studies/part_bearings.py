@@ -1,0 +1,69 @@
+"""Bearings of a drivetrain whose loads are those of a history in time, and which have no entry."""
+
+from __future__ import annotations
+
+from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
+from fe_drivetrain.bearing_life.life.rated import rated_from_catalogue
+from fe_drivetrain.bearing_life.life.reference_life import Turning
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.dynamics.bodies.bearing_reactions import planet_bearing_name
+from fe_drivetrain.dynamics.bodies.machine import Machine
+from fe_drivetrain.studies.gearbox_bearings import (
+    catalogue_entries,
+    entry_of,
+    main_names,
+    require_bearings,
+)
+from fe_drivetrain.studies.life_options import LifeOptions
+from fe_drivetrain.studies.part_loads import CountedParts, ForcedBearing
+from fe_drivetrain.studies.rolling_bearings import own_rules, profile_of
+
+
+def counted_parts(
+    drivetrain: Drivetrain, machine: Machine, options: LifeOptions, rollers: bool
+) -> tuple[CountedParts, tuple[str, ...]]:
+    """Bearings that have an entry of the catalogue, and the names of the others.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        Names the entries.
+    machine : Machine
+        Its machine.
+    options : LifeOptions
+        Catalogues, lubricants and rules of lives.
+    rollers : bool
+        Whether rollers are brought into equilibrium.
+
+    Raises
+    ------
+    InputError
+        An entry is unknown, or of a bearing that there is not.
+    """
+    choices, rules = options.choices, options.rules
+    entries = {**catalogue_entries(drivetrain), **choices.named}
+    planets = {
+        planet_bearing_name(number, pin.name): True
+        for number, stage in enumerate(machine.stages, start=1)
+        if isinstance(stage, PlanetaryData)
+        for pin in stage.pins
+    }
+    names = [*(bearing.name for bearing in machine.bearings), *planets]
+    require_bearings(names, entries, choices.only)
+    known, main = read_bearing_catalogue(*choices.catalogues), main_names(machine)
+    oil = options.oil(drivetrain.operation)
+    found = []
+    for name in names:
+        if name not in entries or choices.only not in (None, name):
+            continue
+        entry = entry_of(name, entries[name], known)
+        profile = profile_of(entry, choices.profiled)
+        rated = rated_from_catalogue(entries[name], *choices.catalogues, **profile)
+        turning: Turning | None = None
+        if name not in main:
+            turning = "outer" if name in planets else "inner"
+        own = own_rules(rules, turning, None if name in main else oil)
+        found.append(ForcedBearing(name, entries[name], entry, rated, own))
+    others = tuple(name for name in names if name not in entries)
+    return CountedParts(tuple(found), rollers), others
