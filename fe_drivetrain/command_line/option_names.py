@@ -29,6 +29,7 @@ OPTIONS: Mapping[str, str] = {
     "cleanliness": "--cleanliness",
     "condensed": "--condensed",
     "duration": "--duration",
+    "events": "--event",
     "every": "--every",
     "generator": "--generator",
     "grids": "--grids",

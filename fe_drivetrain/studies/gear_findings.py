@@ -140,7 +140,9 @@ def _gear_figures(found: Findings, gear: GearAnswer, varies: bool) -> None:
     if S_F is not None:
         found.found(f"S_F of {gear.name}", S_F.value, S_F.band, rating)
     if gear.life is not None and gear.bands is not None:
-        found.found(f"damage of {gear.name}", gear.life.damage.largest, gear.bands.damage, rating)
+        band = gear.bands.damage  # none of an infinite damage, beyond the static strength
+        known = band if np.isfinite(band) else None
+        found.found(f"damage of {gear.name}", gear.life.damage.largest, known, rating)
     found.found(f"sigma_H of {gear.name} [MPa]", gear.contact_stress / 1e6, loads=rating)
     if gear.root_stress is not None:
         found.found(f"sigma_F of {gear.name} [MPa]", gear.root_stress / 1e6, loads=rating)

@@ -405,9 +405,8 @@ def test_ready_commands_name_cases_machine_and_paths_as_a_shell_takes_them(
     standing = validate_project(Project.model_validate(small), folder)
     file = folder / "p.yaml"
     assert ready_commands(standing, file) == [
-        f"fe-drivetrain run --out '{folder}/reports/procedure/machine_gaps' --set "
-        f"drivetrain={MACHINE} procedure/machine_gaps",
-        f"fe-drivetrain run --out '{folder}/reports/procedure/campaign' procedure/campaign",
+        f"fe-drivetrain run --out '{folder}/reports' --set drivetrain={MACHINE} "
+        "procedure/machine_gaps procedure/campaign",
         f"fe-drivetrain validate '{file}'",
     ]
 

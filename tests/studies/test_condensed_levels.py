@@ -11,7 +11,7 @@ from fe_drivetrain.drivetrain_file import Scene, read_drivetrain
 from fe_drivetrain.drivetrain_file.reading import change_scene
 from fe_drivetrain.dynamics import Flexible, Level, Rung, Rungs, plain_rungs
 from fe_drivetrain.dynamics.bodies.condensed_rungs import ON_ROLLERS, SOFT_SEATS, STIFF_SEATS
-from fe_drivetrain.studies import GearsResult, TransientResult, gears, transient, turning_quantities
+from fe_drivetrain.studies import GearsResult, TransientResult, gears, transient, turning_model
 from fe_drivetrain.studies.gear_machine import gear_train
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.machine_description import housings_in_words
@@ -134,7 +134,7 @@ def test_a_peak_is_that_of_the_event_at_its_level(
         asked.append(rung)
         return lost.runs[-1]
 
-    monkeypatch.setattr(turning_quantities, "event_at", event_at)
+    monkeypatch.setattr(turning_model, "event_at", event_at)
     rung, channel = lost.runs[-1].rung, "force of gearbox mount"
     peak = TurningModel(scene, rung).peak("grid_loss", channel)
     assert asked == [rung]

@@ -73,7 +73,7 @@ def bearing_forces(of: Running) -> dict[str, BearingForces]:
         return {}
     found = {}
     springs = of.system.spring_names
-    for name, (body, _) in assembly(of.machine, of.level).seats.items():
+    for name, (body, _) in assembly(of.machine, of.level, flexible=of.flexible).seats.items():
         if bearing_springs(springs, name):
             found[name] = BearingForces(name, (name,), of.row(body)[None])
     for number, stage in enumerate(of.machine.stages, start=1):
