@@ -135,7 +135,7 @@ def test_what_cannot_be_is_refused() -> None:
     with pytest.raises(InputError, match=r"gearbox_uy of the event is 1 m but must be from -0.05"):
         event_of("offset", {"gearbox_uy": 1.0})
     with pytest.raises(
-        InputError, match="radial stiffness of the coupling, as in .*, or an offset of the g"
+        InputError, match=r"radial stiffness of the coupling, as in .*, or an offset of the g"
     ):
         event_of("offset", {})
     with pytest.raises(InputError, match="coupling of the event is -1"):
