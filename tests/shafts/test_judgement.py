@@ -76,10 +76,10 @@ def self_aligning() -> Scene:
 
 
 def test_the_adviser_says_of_a_slight_reaction_what_a_study_makes_of_it() -> None:
-    scene = coarser_scene(self_aligning(), 2.0, 8)
-    main, slight = (
-        advise(scene, Quantity(name), 0.05, shafts=(1,)) for name in ("front.Fz", "gearbox.Fz")
-    )
+    scene = coarser_scene(self_aligning(), 4.0, 8)
+    # a wide tolerance, for which the assembly need not be solved
+    main = advise(scene, Quantity("front.Fz"), 0.9, shafts=(1,))
+    slight = advise(scene, Quantity("gearbox.Fz"), 0.05, shafts=(1,))
     assert main.share == 1.0
     assert 0.0 < slight.share < 0.01
     assert "a study judges no level by less than 1 %" in slight.sentence()
