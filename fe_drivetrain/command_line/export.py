@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 _ENDINGS = (".inp", ".vtu", ".msh")
 _AUTO, _SHAFT, _SUMMARY, _TURNING = "auto", "shaft", "summary", "turning"
-_TORSIONAL = "torsional"
+_TORSIONAL, _BODY = "torsional", "body"
 
 
 @dataclass(frozen=True)
@@ -53,16 +53,18 @@ class ExportRequest:
             metavar="FILE",
             help="The file to write. Without --format its ending decides: .inp is the whole model "
             "for CalculiX, with interfaces, supports and unit loads; .vtu (ParaView) and .msh "
-            "(gmsh) are the mesh.",
+            "(gmsh) are the mesh. With several --format the beginning of the files' names, as in "
+            "--out shaft for shaft-dmig.bdf and shaft-csv.csv, or an existing folder, where they "
+            "begin with the part.",
         ),
     ] = None
     format_: Annotated[
-        str | None,
+        list[str] | None,
         typer.Option(
             "--format",
             metavar="NAME",
             help="Condense to points, and write stiffness and mass in this format; --list shows "
-            "the formats.",
+            "the formats. May be repeated: what is condensed once is written in each.",
         ),
     ] = None
     what: Annotated[
@@ -153,7 +155,7 @@ def export_command(context: typer.Context, asked: ExportRequest) -> int:
         raise InputError(f"Missing {missing}: give it, or --list to see the formats")
     wanted = Export(
         out,
-        asked.format_,
+        tuple(asked.format_ or ()),
         asked.what,
         asked.at,
         asked.level,
@@ -164,20 +166,21 @@ def export_command(context: typer.Context, asked: ExportRequest) -> int:
     )
     wanted.check()
     found = named_drivetrain_or_component(scene, changes)
-    if wanted.what is None and wanted.format is not None and without_sections(found):
+    if wanted.what is None and wanted.formats and without_sections(found):
         wanted = replace(wanted, what=_TURNING)
         wanted.check()
-    if out.exists() and not asked.overwrite:
-        raise InputError(f"--out {out} exists: give another file, or add --overwrite")
-    if out.exists() and Path(scene).exists() and out.samefile(scene):
-        raise InputError(f"--out {out} is the scene itself: give another file")
-    result = _written(found, wanted)
+    files = wanted.files(found)
+    for file in files.values():
+        if file.exists() and not asked.overwrite:
+            raise InputError(f"--out {file} exists: give another file, or add --overwrite")
+        if file.exists() and Path(scene).exists() and file.samefile(scene):
+            raise InputError(f"--out {file} is the scene itself: give another file")
+    result = _written(found, wanted, files)
     if wants_json():
         write_json(result.to_dict())
     else:
-        write(
-            sys.stdout, f"{answer_text(result.answer, result.notes)}\n{result.details[0]}\n{out}\n"
-        )
+        lines = (answer_text(result.answer, result.notes), result.details[0], *files.values())
+        write(sys.stdout, "".join(f"{line}\n" for line in lines))
     return PASSED
 
 
@@ -188,9 +191,9 @@ class Export:
     Attributes
     ----------
     out : Path
-        The file.
-    format : str or None
-        Of condensed matrices; None for a mesh or a model, by the ending of the file.
+        The file; of several formats the beginning of their files' names, or a folder.
+    formats : tuple[str, ...]
+        Of condensed matrices; none for a mesh or a model, by the ending of the file.
     what, at, level : str or None
         Part, points and model level; None for the default.
     modes : int or None
@@ -204,7 +207,7 @@ class Export:
     """
 
     out: Path
-    format: str | None = None
+    formats: tuple[str, ...] = ()
     what: str | None = None
     at: str | None = None
     level: str | None = None
@@ -230,7 +233,7 @@ class Export:
             "--generator": self.generator,
             "--template": self.template,
         }
-        if self.format is None:
+        if not self.formats:
             given = [option for option, value in condensing.items() if value is not None]
             if given:
                 raise InputError(f"{given[0]} needs --format: give one that --list shows")
@@ -239,8 +242,16 @@ class Export:
                     f"--out {self.out} ends in {self.out.suffix!r}: use {', '.join(_ENDINGS)}, or "
                     "give --format"
                 )
-        else:
-            self._check_format(self.format)
+        for name in self.formats:
+            if name not in _endings():
+                known = ", ".join(_endings())
+                raise InputError(f"--format {name!r} is unknown: use {known}")
+        for name in self.formats:
+            self._check_format(name)
+        if len(self.formats) > 1:
+            self._check_several()
+            check_writable(self.out / _SHAFT if self.out.is_dir() else self.out)
+            return
         if self.out.is_dir() or not self.out.resolve().parent.is_dir():
             raise InputError(
                 f"--out {self.out} must be a file in an existing folder: give such a file"
@@ -248,18 +259,18 @@ class Export:
         check_writable(self.out)
 
     def _check_format(self, name: str) -> None:
-        """Refuse a format that is unknown, or not of what is asked for."""
+        """Refuse a format that is not of what is asked for."""
         from fe_drivetrain.export.files import FORMATS
         from fe_drivetrain.export.turning_files import ELASTODYN, TURNING_FORMATS
 
-        if name not in (*FORMATS, *TURNING_FORMATS):
-            known = ", ".join(dict.fromkeys((*FORMATS, *TURNING_FORMATS)))
-            raise InputError(f"--format {name!r} is unknown: use {known}")
         known = ", ".join(TURNING_FORMATS if self.is_turning else FORMATS)
         if name not in (TURNING_FORMATS if self.is_turning else FORMATS):
             of = f"--what {self.what or _SHAFT}"
+            if self.is_turning and self.what is None:
+                others = [other for other in self.formats if other not in FORMATS]
+                of = f"all that turns, as {(*others, '--generator')[0]} asks for"
             raise InputError(f"--format {name} cannot hold {of}: use one of {known}")
-        if (self.template is not None) != (name == ELASTODYN):
+        if (name == ELASTODYN and self.template is None) or self._template_is_idle:
             raise InputError(
                 f"--format {name} does not use --template: leave it out"
                 if self.template is not None
@@ -272,20 +283,72 @@ class Export:
             )
 
     @property
+    def _template_is_idle(self) -> bool:
+        from fe_drivetrain.export.turning_files import ELASTODYN
+
+        return self.template is not None and ELASTODYN not in self.formats
+
+    def _check_several(self) -> None:
+        """Refuse several formats that are one, or of two levels, or one file for all of them."""
+        from fe_drivetrain.export.turning_files import ELASTODYN
+
+        twice = [name for name in self.formats if self.formats.count(name) > 1]
+        if twice:
+            raise InputError(f"--format {twice[0]} is given twice: give it once")
+        if ELASTODYN in self.formats and self.level is None:
+            raise InputError(
+                f"--format {ELASTODYN} is of level {_TORSIONAL} and the others of the finest: add "
+                f"--level {_TORSIONAL}, or write it by itself"
+            )
+        if self.out.suffix in (*_ENDINGS, *_endings().values()):
+            raise InputError(
+                f"--out {self.out} is one file, but {len(self.formats)} formats need one each: "
+                f"leave {self.out.suffix} out to begin their names, or give an existing folder"
+            )
+        if not self.out.is_dir() and not self.out.resolve().parent.is_dir():
+            raise InputError(
+                f"--out {self.out} must begin the names of files in an existing folder, or be "
+                "such a folder: give one of these"
+            )
+
+    def files(self, found: Drivetrain | Component) -> dict[str, Path]:
+        """The files to write by format; "" of a mesh or model.
+
+        Of several formats each is named by what they have in common, and its format.
+
+        Parameters
+        ----------
+        found : Drivetrain or Component
+            What is exported.
+        """
+        from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+
+        if len(self.formats) < 2:
+            return {"".join(self.formats): self.out}
+        part = _SHAFT if isinstance(found, Drivetrain) else _BODY
+        part = self.what or (_TURNING if self.is_turning else part)
+        stem = self.out / part if self.out.is_dir() else self.out
+        endings = _endings()
+        return {name: stem.with_name(f"{stem.name}-{name}{endings[name]}") for name in self.formats}
+
+    @property
     def is_turning(self) -> bool:
         """Whether all that turns is written: asked for, or by a format that holds nothing else."""
         from fe_drivetrain.export.files import FORMATS
 
-        if self.what is not None or self.format is None:
+        if self.what is not None or not self.formats:
             return self.what == _TURNING
-        return self.generator is not None or self.format not in FORMATS
+        return self.generator is not None or not set(self.formats) <= set(FORMATS)
 
     @property
-    def left_out(self) -> str:
-        """What the format leaves out of all that turns; empty where it holds all."""
+    def left_out(self) -> dict[str, str]:
+        """What formats have no room for, by those that leave something out."""
+        from fe_drivetrain.export.files import FORMATS
         from fe_drivetrain.export.turning_files import TURNING_FORMATS
 
-        return TURNING_FORMATS[self.format or ""].left_out if self.is_turning else ""
+        known = TURNING_FORMATS if self.is_turning else FORMATS
+        found = {name: known[name].left_out for name in self.formats}
+        return {name: left_out for name, left_out in found.items() if left_out}
 
     @property
     def points(self) -> list[str] | None:
@@ -320,9 +383,16 @@ class Export:
             return "turning"
         if self.modes is not None:
             return "modes"
-        if self.format is None:
+        if not self.formats:
             return "model" if self.out.suffix == ".inp" else "mesh"
         return "summary" if self.what == _SUMMARY else "superelement"
+
+
+def _endings() -> dict[str, str]:
+    """The usual ending of each format of matrices, by its name."""
+    from fe_drivetrain.export.turning_files import format_rows
+
+    return {row["format"]: row["ending"] for row in format_rows()}
 
 
 def without_sections(found: Drivetrain | Component) -> bool:
@@ -332,8 +402,8 @@ def without_sections(found: Drivetrain | Component) -> bool:
     return isinstance(found, LumpedDrivetrain)
 
 
-def _written(found: Drivetrain | Component, wanted: Export) -> ExportResult:
-    """Write the file; returns what is in it."""
+def _written(found: Drivetrain | Component, wanted: Export, files: dict[str, Path]) -> ExportResult:
+    """Write the files; returns what is in them."""
     from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
     from fe_drivetrain.studies.export_content import prepare_export
 
@@ -358,41 +428,41 @@ def _written(found: Drivetrain | Component, wanted: Export) -> ExportResult:
             report=report,
         )
         report("write")
-        _write(result, wanted)
+        _write(result, wanted, files)
     result = result_with_options(result)
-    if not (left_out := wanted.left_out):
-        return result
-    note = f"Format {wanted.format} leaves out {left_out}."
-    return replace(result, notes=(note, *result.notes))
+    notes = (f"Format {name} leaves out {text}." for name, text in wanted.left_out.items())
+    return replace(result, notes=(*notes, *result.notes))
 
 
 def _check_format(wanted: Export, kind: Kind) -> None:
     """Refuse a format that cannot hold modes or a summary of a scene."""
-    if kind == "modes" and wanted.what in (None, _SHAFT) and wanted.format != "json":
+    others = [name for name in wanted.formats if name != "json"]
+    if kind == "modes" and wanted.what in (None, _SHAFT) and others:
         raise InputError(
-            f"--modes is written in json, not as --format {wanted.format}: give --format json"
+            f"--modes is written in json, not as --format {others[0]}: give --format json"
         )
-    if kind == "summary" and wanted.format != "json":
-        raise InputError(f"--what summary is json, not {wanted.format}: give --format json")
+    if kind == "summary" and others:
+        raise InputError(f"--what summary is json, not {others[0]}: give --format json")
 
 
-def _write(result: ExportResult, wanted: Export) -> None:
-    """Write the file in the format of its content."""
+def _write(result: ExportResult, wanted: Export, files: dict[str, Path]) -> None:
+    """Write the files in the formats of their content."""
     from fe_drivetrain import export
     from fe_drivetrain.elasticity.mesh.files import write as write_mesh
     from fe_drivetrain.elasticity.mesh.mesh import Mesh
     from fe_drivetrain.export.craig_bampton import CraigBampton
+    from fe_drivetrain.export.files import write_superelements
     from fe_drivetrain.export.formats.craig_bampton_json import write_craig_bampton
     from fe_drivetrain.export.formats.summary import SummaryFile, write_summary
     from fe_drivetrain.export.superelement import Superelement
     from fe_drivetrain.export.turning import Turning
-    from fe_drivetrain.export.turning_files import write_turning
+    from fe_drivetrain.export.turning_files import write_turning_files
 
     content = result.content
     if isinstance(content, Turning):
-        write_turning(wanted.out, content, wanted.format or "", wanted.overwrite, wanted.template)
+        write_turning_files(files, content, wanted.overwrite, wanted.template)
     elif isinstance(content, Superelement):
-        export.write_superelement(wanted.out, content, wanted.format or "", wanted.overwrite)
+        write_superelements(files, content, wanted.overwrite)
     elif isinstance(content, CraigBampton):
         write_craig_bampton(wanted.out, content)
     elif isinstance(content, SummaryFile):
