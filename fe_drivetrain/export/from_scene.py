@@ -13,8 +13,8 @@ from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.solve.condensation import Condensed, keep_points
 from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
 from fe_drivetrain.export.unit_statement import (
-    of_units_on_supports,
     stated_bound,
+    stated_of_drivetrain,
     stated_rollers,
 )
 from fe_drivetrain.report.seal import drivetrain_hash
@@ -109,9 +109,9 @@ def supported_superelement(
     origin = scene_origin(
         scene, f"{model.level} {model.title}", f"{model.cost.unknowns:,} unknowns"
     )
-    stated = of_units_on_supports(scene, model.level)
-    if stated and band is not None:
-        stated["bound"] += "; errors of the meshes are not in the band"
+    bound, rollers = stated_of_drivetrain(scene, model.level)
+    if bound and band is not None:
+        bound += "; errors of the meshes are not in the band"
     return Superelement(
         "drivetrain",
         tuple(at),
@@ -121,7 +121,8 @@ def supported_superelement(
         True,
         band,
         origin,
-        **stated,
+        bound,
+        rollers,
     )
 
 

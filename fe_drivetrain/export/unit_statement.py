@@ -55,8 +55,8 @@ def stated_rollers(scene: Scene, names: Sequence[str]) -> str:
     return _of_each(names, lambda name: _rollers(scene.bearing_unit(name)))
 
 
-def of_units_on_supports(scene: Scene, level: int) -> dict[str, str]:
-    """Bound and rollers of the units of a whole drivetrain by these names; empty without units.
+def stated_of_drivetrain(scene: Scene, level: int) -> tuple[str, str]:
+    """Bound and rollers of the units of a whole drivetrain; empty without units.
 
     Parameters
     ----------
@@ -67,11 +67,11 @@ def of_units_on_supports(scene: Scene, level: int) -> dict[str, str]:
     """
     names = [unit.bearing.name for unit in scene.bearing_units]
     if not names:
-        return {}
+        return "", ""
     bound = "the only one, for shaft, bearings and housings are solved together"
     if level < 4:
         bound = stated_bound(scene, names, ring=level < 3)
-    return {"bound": bound, "rollers": stated_rollers(scene, names)}
+    return bound, stated_rollers(scene, names)
 
 
 def _rollers(unit: BearingUnit) -> str:

@@ -20,7 +20,7 @@ from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.export.formats.superelement_json import OriginFile, read_content
 from fe_drivetrain.export.from_scene import scene_origin
 from fe_drivetrain.export.superelement import FRAME, UNITS
-from fe_drivetrain.export.unit_statement import of_units_on_supports
+from fe_drivetrain.export.unit_statement import stated_of_drivetrain
 from fe_drivetrain.foreign.assembly import solids_of_unit
 from fe_drivetrain.shafts.fidelity.bearing_units import UnitBounds, unit_bounds
 from fe_drivetrain.shafts.fidelity.ladder import LevelModel, assembly_level, shaft_level
@@ -123,9 +123,10 @@ def summary(scene: Scene, level: int = 2) -> SummaryFile:
         model = assembly_level(scene)
     else:
         model = shaft_level(scene, level, springs, meridian if level == 2 else None)
-    stated = of_units_on_supports(scene, level)
+    bound, rollers = stated_of_drivetrain(scene, level)
     return SummaryFile(
-        **stated,
+        bound=bound,
+        rollers=rollers,
         shaft=ShaftFile(**shaft_numbers(meridian)),
         bearing_units={name: _unit(unit) for name, unit in bounds.items()},
         reactions=_reactions(scene, model),
