@@ -342,13 +342,15 @@ class Export:
 
     @property
     def left_out(self) -> dict[str, str]:
-        """What formats have no room for, by those that leave something out."""
+        """Names of formats by what they have no room for."""
         from fe_drivetrain.export.files import FORMATS
         from fe_drivetrain.export.turning_files import TURNING_FORMATS
 
         known = TURNING_FORMATS if self.is_turning else FORMATS
-        found = {name: known[name].left_out for name in self.formats}
-        return {name: left_out for name, left_out in found.items() if left_out}
+        found: dict[str, list[str]] = {}
+        for name in self.formats:
+            found.setdefault(known[name].left_out, []).append(name)
+        return {text: ", ".join(names) for text, names in found.items() if text}
 
     @property
     def points(self) -> list[str] | None:
@@ -430,7 +432,12 @@ def _written(found: Drivetrain | Component, wanted: Export, files: dict[str, Pat
         report("write")
         _write(result, wanted, files)
     result = result_with_options(result)
-    notes = (f"Format {name} leaves out {text}." for name, text in wanted.left_out.items())
+    notes = (
+        f"Format {names} leaves out {text}."
+        if "," not in names
+        else f"Each of the formats {names} leaves out {text}."
+        for text, names in wanted.left_out.items()
+    )
     return replace(result, notes=(*notes, *result.notes))
 
 

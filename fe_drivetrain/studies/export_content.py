@@ -347,10 +347,11 @@ def _description(content: OfPart) -> str:
 def _answer(found: Findings, drivetrain: Scene | Component, kind: Kind, content: OfPart) -> None:
     """State what is ready to be written, and how certain it is."""
     if isinstance(content, Superelement | SummaryFile):
-        for what, text in (("Bound", content.bound), ("Rollers", content.rollers)):
-            if text:
-                found.note(f"{what} of bearing units: {text}.")
-                found.data(f"{what.lower()} of bearing units", text)
+        stated = {"bound": content.bound, "rollers": content.rollers}
+        if all(stated.values()):
+            of_units = "Bound of bearing units: {bound}. Rollers: {rollers}."
+            found.note(of_units.format(**stated), first=True)
+            found.data("bearing units", stated)
     if isinstance(content, CraigBampton):
         verdict, figures = _of_modes(found, content)
     elif isinstance(content, Superelement):
