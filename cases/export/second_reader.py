@@ -26,8 +26,9 @@ def pynastran(module: str) -> Any:
         return import_module(f"pyNastran.{module}")
     except (ImportError, AttributeError) as error:
         raise MissingToolError(
-            f"this needs pyNastran, which cannot be loaded ({error}): install it with pip "
-            'install "fe-drivetrain[nastran]"'
+            f"this needs pyNastran, which cannot be loaded ({error}): install it, into an "
+            "environment of its own since it needs numpy 1, with pip install "
+            '"fe-drivetrain[consumers]"'
         ) from error
     finally:
         for name in missing:

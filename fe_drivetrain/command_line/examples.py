@@ -69,6 +69,7 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     "compare-runs": ("before after",),
     "export": (
         "two_bearings --out shaft.json --format json",
+        "two_bearings --what front --format dmig --format subdyn --out unit",
         "mine.yaml --out model.inp",
         "nrel_750kw --what turning --level rigid --format json --out system.json",
         "--list",

@@ -13,7 +13,7 @@ import stat
 import sys
 import tempfile
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
@@ -145,6 +145,13 @@ def atomic_path(target: Path) -> Iterator[Path]:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
         let_go(lock)
+
+
+@contextmanager
+def atomic_paths(targets: Sequence[Path]) -> Iterator[list[Path]]:
+    """`atomic_path` of several files: they are put in place only if all went well."""
+    with ExitStack() as stack:
+        yield [stack.enter_context(atomic_path(target)) for target in targets]
 
 
 def _held_file(file: Path) -> tuple[Path, int | None]:

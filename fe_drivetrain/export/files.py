@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 from inspect import signature
 from pathlib import Path
@@ -11,15 +11,15 @@ from typing import NamedTuple
 
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.files import atomic_paths
 from fe_drivetrain.common.reading import require_readable
 from fe_drivetrain.export.formats.labelled_matrices import TAKEN_AS_IT_IS, Naming
 from fe_drivetrain.export.superelement import Superelement
 
 
 class Format(NamedTuple):
-    """A file format: its name, usual ending, what reads it, its module, the digits it keeps, and
-    the extra it needs.
+    """A file format: its name, usual ending, what reads it, its module, the digits it keeps, the
+    extra it needs, and what of a superelement it has no room for.
 
     The module has ``write(path, element)``, and ``read(path)`` where the file holds enough for it.
     """
@@ -30,6 +30,7 @@ class Format(NamedTuple):
     module: str
     digits: int = 15
     extra: str = ""
+    left_out: str = ""
 
 
 FORMATS: dict[str, Format] = {
@@ -41,7 +42,13 @@ FORMATS: dict[str, Format] = {
         Format("mtx-mass", ".mtx", "Matrix Market readers: the mass", "matrix_market_mass"),
         Format("hdf5", ".h5", "HDF5 readers", "hdf5", extra="hdf5"),
         Format("dmig", ".bdf", "Nastran, as bulk data: GRID, DMIG", "dmig", 10),
-        Format("op4", ".op4", "Nastran INPUTT4, as text", "op4"),
+        Format(
+            "op4",
+            ".op4",
+            "Nastran INPUTT4, as text",
+            "op4",
+            left_out="names and source, and bound, rollers and band of the stiffness",
+        ),
         Format("calculix", ".inp", "CalculiX: springs and equations", "calculix_springs", 11),
         Format("extptfm", ".dat", "OpenFAST 5, ExtPtfm superelement", "extptfm"),
         Format("subdyn", ".dat", "OpenFAST 5, SubDyn spring element: one point", "subdyn"),
@@ -76,12 +83,38 @@ def write_superelement(
     InputError
         The format is unknown, the file exists, or the format cannot hold this superelement.
     """
-    path = Path(path)
-    writer = _function(format, "write")
-    if path.exists() and not overwrite:
-        raise InputError(f"{path} exists: name another file, or allow to overwrite it")
-    with atomic_path(path) as unfinished:
-        writer(unfinished, element)
+    write_superelements({format: Path(path)}, element, overwrite)
+
+
+def write_superelements(
+    files: Mapping[str, Path], element: Superelement, overwrite: bool = False
+) -> None:
+    """Write a superelement in several formats; all files appear whole, or none does.
+
+    Parameters
+    ----------
+    files : Mapping[str, Path]
+        A file for each format, by its name in `FORMATS`.
+    element, overwrite : Superelement, bool
+        The same as for `write_superelement`, and so is what is refused.
+    """
+    writers = [_function(format, "write") for format in files]
+    refuse_existing(files.values(), overwrite)
+    with atomic_paths(list(files.values())) as unfinished:
+        for writer, path in zip(writers, unfinished, strict=True):
+            writer(path, element)
+
+
+def refuse_existing(paths: Iterable[Path], overwrite: bool) -> None:
+    """Refuse files that are there, unless they may be overwritten.
+
+    Raises
+    ------
+    InputError
+    """
+    for path in paths:
+        if path.exists() and not overwrite:
+            raise InputError(f"{path} exists: name another file, or allow to overwrite it")
 
 
 def read_superelement(

@@ -12,11 +12,17 @@ from fe_drivetrain.common.stiffness_bands import StiffnessBands
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.solve.condensation import Condensed, keep_points
 from fe_drivetrain.export.superelement import Origin, Superelement, refuse_one_point
+from fe_drivetrain.export.unit_statement import (
+    stated_bound,
+    stated_of_drivetrain,
+    stated_rollers,
+)
 from fe_drivetrain.report.seal import drivetrain_hash
 from fe_drivetrain.shafts.fidelity.bearing_units import banded_unit, unit_matrices
 from fe_drivetrain.shafts.fidelity.ladder import LevelModel
 from fe_drivetrain.shafts.fidelity.shaft_bands import banded_meridian, banded_solid, meridian_order
 from fe_drivetrain.shafts.fidelity.shafts import beam_shaft, reference_points
+from fe_drivetrain.shafts.fidelity.unit_faces import face_of
 
 #: Sections of a beam up to which the meridian is solved for its band.
 MAX_BANDED = 100
@@ -90,6 +96,8 @@ def supported_superelement(
 ) -> Superelement:
     """The drivetrain on its supports, at points of a solved level of the ladder.
 
+    Up to level 3, its bearing units are to be at their stiff bounds.
+
     Raises
     ------
     InputError
@@ -101,7 +109,21 @@ def supported_superelement(
     origin = scene_origin(
         scene, f"{model.level} {model.title}", f"{model.cost.unknowns:,} unknowns"
     )
-    return Superelement("drivetrain", tuple(at), positions, stiffness, None, True, band, origin)
+    bound, rollers = stated_of_drivetrain(scene, model.level)
+    if bound and band is not None:
+        bound += "; errors of the meshes are not in the band"
+    return Superelement(
+        "drivetrain",
+        tuple(at),
+        positions,
+        stiffness,
+        None,
+        True,
+        band,
+        origin,
+        bound,
+        rollers,
+    )
 
 
 def unit_superelement(scene: Scene, name: str, mass: bool = False) -> Superelement:
@@ -134,8 +156,17 @@ def unit_superelement(scene: Scene, name: str, mass: bool = False) -> Supereleme
         unit_matrices(scene, name).mass if mass else None,
         supported=True,
         band=band,
-        origin=scene_origin(scene, "4 solid, face held in shape", f"{scene.mesh.housing:g} m"),
+        origin=scene_origin(scene, _unit_level(scene, name), f"{scene.mesh.housing:g} m"),
+        bound=stated_bound(scene, [name]),
+        rollers=stated_rollers(scene, [name]),
     )
+
+
+def _unit_level(scene: Scene, name: str) -> str:
+    if scene.bearing_unit(name).condensed is not None:
+        return "4 stiffness of the housing as given"
+    _, way = face_of(scene, name, ring=True, coupling="rigid")
+    return f"4 solid, face {'held in shape' if way == 'rigid' else 'moving on average'}"
 
 
 def scene_origin(scene: Scene, level: str, mesh: str) -> Origin:

@@ -59,6 +59,8 @@ def read_limited(
         stated["supported"],
         None if band is None else StiffnessBands(**band),
         Origin(**stated["origin"]),
+        stated["bound"],
+        stated["rollers"],
     )
 
 
@@ -77,6 +79,8 @@ def arrays_of(request: dict[str, Any]) -> dict[str, Any]:
         "supported": element.supported,
         "band": None if element.band is None else vars(element.band),
         "origin": vars(element.origin),
+        "bound": element.bound,
+        "rollers": element.rollers,
     }
     matrices = {key: getattr(element, key) for key in _MATRICES}
     kept = {key: matrix for key, matrix in matrices.items() if matrix is not None}

@@ -13,6 +13,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.export.from_scene import unit_superelement
 from fe_drivetrain.export.superelement import Superelement
+from fe_drivetrain.export.unit_statement import stated_bound, stated_rollers
 
 
 def seats_superelement(scene: Scene) -> Superelement:
@@ -25,9 +26,11 @@ def seats_superelement(scene: Scene) -> Superelement:
     InputError
         The scene has no bearing.
     """
-    units = [unit_superelement(scene, unit.bearing.name) for unit in scene.bearing_units]
+    names = [unit.bearing.name for unit in scene.bearing_units]
+    units = [unit_superelement(scene, name) for name in names]
     if not units:
         raise InputError(f"scene {scene.title!r} has no bearing: there is no seat to export")
+    levels = dict.fromkeys(unit.origin.level for unit in units)
     return replace(
         units[0],
         name="seats",
@@ -35,4 +38,7 @@ def seats_superelement(scene: Scene) -> Superelement:
         positions=np.vstack([unit.positions for unit in units]),
         stiffness=block_diag(*(unit.stiffness for unit in units)),
         band=reduce(operator.or_, (unit.band for unit in units if unit.band is not None)),
+        origin=replace(units[0].origin, level="; ".join(levels)),
+        bound=stated_bound(scene, names),
+        rollers=stated_rollers(scene, names),
     )

@@ -112,6 +112,9 @@ class Superelement:
         None where it is not known. Of one number for all, `StiffnessBands.uniform`.
     origin : Origin
         Where it comes from.
+    bound, rollers : str
+        Of the bearing units in the stiffness, in words: which of their bounds it has, and whether
+        rollers give in it; empty where there are none, or it is not known.
     """
 
     name: str
@@ -122,6 +125,8 @@ class Superelement:
     supported: bool = False
     band: StiffnessBands | None = None
     origin: Origin = field(default_factory=Origin)
+    bound: str = ""
+    rollers: str = ""
 
     __repr__ = short_repr
 
@@ -186,6 +191,12 @@ class Superelement:
                     f"superelement {self.name!r}: the position of {point} is ({place}) but must be "
                     f"finite and within {FARTHEST:g} m of the origin: give metres"
                 )
+
+    @property
+    def of_units(self) -> dict[str, str]:
+        """What is stated of its bearing units, by name; empty where nothing is."""
+        stated = {"bound": self.bound, "rollers": self.rollers}
+        return {key: " ".join(text.split()) for key, text in stated.items() if text}
 
     @property
     def rigid_motions(self) -> Floats:

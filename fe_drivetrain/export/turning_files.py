@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple
 
 from fe_drivetrain.common.errors import InputError, require_known
-from fe_drivetrain.common.files import atomic_path
-from fe_drivetrain.export.files import FORMATS
-from fe_drivetrain.export.formats.elastodyn import write_torsion
+from fe_drivetrain.common.files import atomic_paths
+from fe_drivetrain.export.files import FORMATS, refuse_existing
+from fe_drivetrain.export.formats.elastodyn import with_torsion
 from fe_drivetrain.export.turning import Turning
 
 
@@ -125,19 +125,43 @@ def write_turning(
     MissingToolError
         What the format needs is not installed.
     """
-    path = Path(path)
-    require_known("format", format, TURNING_FORMATS)
-    if path.exists() and not overwrite:
-        raise InputError(f"{path} exists: name another file, or allow to overwrite it")
-    if format == ELASTODYN:
-        if template is None:
-            raise InputError("format 'elastodyn' changes two values of a file: give it as template")
+    write_turning_files({format: Path(path)}, turning, overwrite, template)
+
+
+def write_turning_files(
+    files: Mapping[str, Path],
+    turning: Turning,
+    overwrite: bool = False,
+    template: str | Path | None = None,
+) -> None:
+    """Write all that turns in several formats; all files appear whole, or none does.
+
+    Parameters
+    ----------
+    files : Mapping[str, Path]
+        A file for each format, by its name in `TURNING_FORMATS`.
+    turning, overwrite, template : Turning, bool, str or Path or None
+        The same as for `write_turning`, and so is what is refused.
+    """
+    for format in files:
+        require_known("format", format, TURNING_FORMATS)
+    refuse_existing(files.values(), overwrite)
+    with atomic_paths(list(files.values())) as unfinished:
+        for format, path in zip(files, unfinished, strict=True):
+            _writer(format, template)(path, turning)
+
+
+def _writer(format: str, template: str | Path | None) -> Callable[[Path, Turning], object]:
+    """The function that writes a format into an unfinished file."""
+    if format != ELASTODYN:
+        one = TURNING_FORMATS[format]
+        module = import_module(f"fe_drivetrain.export.formats.{one.module}")
+        return getattr(module, one.function)  # type: ignore[no-any-return]
+    if template is None:
+        raise InputError("format 'elastodyn' changes two values of a file: give it as template")
+
+    def write(path: Path, turning: Turning) -> None:
         facts = "; ".join(f"{key}: {value}" for key, value in turning.source().items())
-        write_torsion(template, path, turning.spring.torsion, overwrite, stated=facts)
-        return
-    one = TURNING_FORMATS[format]
-    write: Callable[[Path, Turning], None] = getattr(
-        import_module(f"fe_drivetrain.export.formats.{one.module}"), one.function
-    )
-    with atomic_path(path) as unfinished:
-        write(unfinished, turning)
+        path.write_bytes(with_torsion(template, turning.spring.torsion, facts)[0])
+
+    return write

@@ -346,6 +346,12 @@ def _description(content: OfPart) -> str:
 
 def _answer(found: Findings, drivetrain: Scene | Component, kind: Kind, content: OfPart) -> None:
     """State what is ready to be written, and how certain it is."""
+    if isinstance(content, Superelement | SummaryFile):
+        stated = {"bound": content.bound, "rollers": content.rollers}
+        if all(stated.values()):
+            of_units = "Bound of bearing units: {bound}. Rollers: {rollers}."
+            found.note(of_units.format(**stated), first=True)
+            found.data("bearing units", stated)
     if isinstance(content, CraigBampton):
         verdict, figures = _of_modes(found, content)
     elif isinstance(content, Superelement):
@@ -397,14 +403,15 @@ def _of_superelement(found: Findings, content: Superelement) -> tuple[str, list[
     if not (bands and mass):
         level = float(content.origin.level.partition(" ")[0])
         figures.append(found.value("level of its model", level))
-    known = "the band of its stiffness is not known"
+    bound = ", the stiff bound," if content.bound.startswith("stiff:") else ""
+    known = f"the band of its stiffness{bound} is not known"
     if bands:
         widest = max(bands, key=lambda one: one.value)
-        known = f"its stiffness is known within {formatted(widest.value, 2)}\u00a0%"
+        known = f"its stiffness{bound} is known within {formatted(widest.value, 2)}\u00a0%"
     state = "on its supports" if content.supported else "free"
     # other parts than these have names of the user's
     subject = "The shaft" if content.name == SHAFT else content.name
-    return f"{subject} is condensed to {n} points, {state}; {known}.", figures
+    return f"{subject} is condensed to {n} point{'s' * (n > 1)}, {state}; {known}.", figures
 
 
 def _data(found: Findings, content: OfPart) -> None:

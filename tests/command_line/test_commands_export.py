@@ -13,6 +13,7 @@ from fe_drivetrain.export.files import FORMATS
 from fe_drivetrain.export.scene_export import superelement_of
 from fe_drivetrain.export.turning_files import TURNING_FORMATS
 from fe_drivetrain.shafts.fidelity.ladder import housing_springs, shaft_level
+from fe_drivetrain.studies import export_content
 
 CONDENSED = ("main_bearing_bonded", "--out", "a", "--format", "csv")
 
@@ -66,6 +67,39 @@ def test_export_condenses_and_writes(
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith(".")] == []
 
 
+def test_several_formats_are_of_one_condensation(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """The files begin with the stem, or with the part in a folder; all appear or none."""
+    element = superelement_of(coarse_scene("bonded"), "main_bearing")
+    calls: list[str] = []
+    monkeypatch.setattr(
+        export_content, "superelement_of", lambda *_: calls.append("condensed") or element
+    )
+    monkeypatch.chdir(tmp_path)
+    formats = [word for name in ("csv", "dmig", "subdyn", "op4") for word in ("--format", name)]
+    asked = ("main_bearing_bonded", "--what", "main_bearing", *formats)
+    endings = ("-csv.csv", "-dmig.bdf", "-subdyn.dat", "-op4.op4")
+    Path("folder").mkdir()
+    for out, stem in (("unit", "unit"), ("folder", "folder/main_bearing")):
+        assert exported(monkeypatch, *asked, "--out", out) == 0
+        said = capsys.readouterr().out
+        assert said.splitlines()[-4:] == [f"{stem}{ending}" for ending in endings]
+        assert f"Bound of bearing units: {element.bound}. Rollers: {element.rollers}." in said
+        assert "Format op4 leaves out" in said
+        for name, ending in zip(("csv", "dmig"), endings, strict=False):
+            found = export.read_superelement(f"{stem}{ending}", name)
+            assert (found.bound, found.band) == (element.bound, element.band)
+    assert calls == ["condensed"] * 2
+    # a unit at rest has no mass, which the second format asks for
+    there = sorted(tmp_path.rglob("*"))
+    assert exported(monkeypatch, *asked, "--format", "extptfm", "--out", "other") == 2
+    assert "has no mass" in capsys.readouterr().err
+    assert exported(monkeypatch, *asked, "--out", "unit") == 2
+    assert "--out unit-csv.csv exists" in capsys.readouterr().err
+    assert sorted(tmp_path.rglob("*")) == there
+
+
 def test_the_exported_drivetrain_stands_on_springs_within_its_band() -> None:
     scene = coarse_scene("bonded")
     element = superelement_of(scene, "drivetrain", level=1)
@@ -109,6 +143,15 @@ def test_export_overwrites_only_if_asked(
         (("main_bearing_bonded", "--out", "a.csv"), "or give --format"),
         (("main_bearing_bonded", "--out", "a", "--format", "xyz"), "use json, csv"),
         (("main_bearing_bonded", "--out", "no/a", "--format", "csv"), "existing folder"),
+        ((*CONDENSED, "--format", "csv"), "--format csv is given twice"),
+        ((*CONDENSED, "--format", "dmig", "--out", "a.bdf"), "--out a.bdf is one file, but 2"),
+        ((*CONDENSED, "--format", "dmig", "--out", "no/a"), "begin the names of files"),
+        ((*CONDENSED, "--format", "dmig", "--format", "ross"), "all that turns, as ross asks for"),
+        ((*CONDENSED, "--format", "json", "--modes", "3"), "not as --format csv"),
+        (
+            ("nrel_5mw", *CONDENSED[1:], "--format", "elastodyn", "--template", "a"),
+            "add --level torsional",
+        ),
         (
             (*CONDENSED, "--what", "tower"),
             "use one of shaft, drivetrain, seats, main_bearing",

@@ -72,7 +72,7 @@ def test_the_tutorial_ends_with_a_free_shaft_in_two_programs_forms(
     assert names["reaction"][0, 2] == pytest.approx((0.85 * 3e5 - 5e5) / 1.8, rel=1e-9)
     assert np.allclose(unit.stiffness[3:], 0.0, atol=1e-9 * np.abs(unit.stiffness).max())
     assert (unit.stiffness.diagonal()[:3] > 0).all()
-    assert (tmp_path / "shaft.bdf").is_file()
+    assert (tmp_path / "shaft-dmig.bdf").is_file()
     assert (tmp_path / "reports/advise/mine/report.html").is_file()
 
 

@@ -1,6 +1,8 @@
 """Matrix files, read by the programs that they are for."""
 
 import csv
+import re
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -33,6 +35,7 @@ from fe_drivetrain.export.programs.ccx import run_calculix
 from fe_drivetrain.export.superelement import FRAME, UNITS, Superelement
 from fe_drivetrain.shafts.fidelity.ladder import shaft_level
 
+ROOT = Path(__file__).parents[2]
 TEXTS = ("csv", "mtx", "mtx-mass", "dmig", "calculix")
 
 
@@ -447,8 +450,17 @@ def test_an_absent_pynastran_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
         raise ImportError(name)
 
     monkeypatch.setattr(second_reader, "import_module", absent)
-    with pytest.raises(MissingToolError, match=r'pip install "fe-drivetrain\[nastran\]"'):
+    with pytest.raises(MissingToolError, match=r'pip install "fe-drivetrain\[consumers\]"'):
         second_reader.pynastran("op4.op4")
+
+
+def test_no_extra_of_a_user_holds_numpy_back() -> None:
+    """pyNastran checks what is written, and needs numpy 1: only the checks install it."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = dict(project["optional-dependencies"])
+    assert any(needed.startswith("pyNastran") for needed in extras.pop("consumers"))
+    needs = [*project["dependencies"], *(needed for extra in extras.values() for needed in extra)]
+    assert [n for n in needs if re.match(r"(?i)pynastran|numpy\b.*<|.*\bconsumers\b", n)] == []
 
 
 # --- CalculiX -----------------------------------------------------------------------------------

@@ -396,9 +396,14 @@ def test_openfast_files_state_their_origin(
 ) -> None:
     path = tmp_path / "file.dat"
     element = shaft if format == "extptfm" else cantilever()
-    element = replace(element, origin=Origin("my scene", "abc123"), band=BANDS)
+    stated = {"bound": "stiff: a face", "rollers": "none"}
+    element = replace(element, origin=Origin("my scene", "abc123"), band=BANDS, **stated)
     export.write_superelement(path, element, format)
     said = commented(path.read_text().splitlines(), "!")
+    assert stated.items() <= said.items()
+    head = "\n".join(path.read_text().splitlines()[:4])
+    assert all(f"{key}: {text}" in head for key, text in stated.items())
+    assert f"band: axial {'2 %' if format == 'subdyn' else '0.02'}, torsion" in head
     assert said["scene"] == "my scene"
     assert said["scene hash"] == "abc123"
     assert said["band"] == "axial 0.02, torsion 0.001, bending 0.03 of the stiffness"

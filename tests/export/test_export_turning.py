@@ -25,7 +25,7 @@ from fe_drivetrain.dynamics.torsion import static_stiffness
 from fe_drivetrain.export.formats.elastodyn import Torsion, read_torsion
 from fe_drivetrain.export.formats.turning_json import TurningFile
 from fe_drivetrain.export.turning import OneSpring, Turning, turning_of
-from fe_drivetrain.export.turning_files import TURNING_FORMATS, write_turning
+from fe_drivetrain.export.turning_files import TURNING_FORMATS, write_turning, write_turning_files
 from fe_drivetrain.report.seal import drivetrain_hash
 from fe_drivetrain.studies import modes, prepare_export
 
@@ -131,6 +131,18 @@ def test_scipy_finds_the_frequencies_of_modes_in_matrix_market_files(
     np.testing.assert_array_equal(found["mtx-gyroscopic"], -found["mtx-gyroscopic"].T)
     np.testing.assert_allclose(found["mtx-damping"], content.damping, rtol=1e-12, atol=1e-9)
     assert (level == "rigid") == found["mtx-gyroscopic"].any()
+
+
+def test_formats_of_all_that_turns_are_all_written_or_none(rigid: Turning, tmp_path: Path) -> None:
+    files = {"csv": tmp_path / "a.csv", "elastodyn": tmp_path / "a.dat"}
+    with pytest.raises(InputError, match="give it as template"):
+        write_turning_files(files, rigid)
+    assert list(tmp_path.iterdir()) == []
+    template = tmp_path / "mine.dat"
+    template.write_text(TEXT, encoding="utf-8")
+    write_turning_files(files, rigid, template=template)
+    assert read_torsion(files["elastodyn"]) == rigid.spring.torsion
+    assert files["csv"].stat().st_size > 0
 
 
 def test_json_and_csv_hold_the_same_numbers(rigid: Turning, tmp_path: Path) -> None:

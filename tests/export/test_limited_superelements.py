@@ -93,7 +93,7 @@ def scaled(factor: float) -> Callable[[list[list[float]]], list[list[float]]]:
         (changed("frame", to="z up"), "frame is .*z up.* but must be"),
         (changed("degrees_of_freedom", to=lambda f: f[::-1]), "degrees_of_freedom is"),
         (changed("supported", to="maybe"), "supported"),
-        (changed("schema_version", to=3), "schema_version is 3 but must be 1 or 2"),
+        (changed("schema_version", to=4), "schema_version is 4 but must be 1, 2 or 3"),
         (changed("stiff", to=1), "unknown key 'stiff'"),
         (lambda content: content.pop("stiffness"), "stiffness is missing: add it"),
     ],

@@ -86,7 +86,7 @@ def test_json_keeps_the_bands_and_reads_the_earlier_form(tmp_path: Path) -> None
     file = tmp_path / "unit.json"
     export.write_superelement(file, unit(), "json")
     content = json.loads(file.read_text())
-    assert content["schema_version"] == 2
+    assert content["schema_version"] == 3
     assert content["band"] == dict(zip(KINDS, (0.01, 0.002, 1.0 / 3.0), strict=True))
     assert export.read_superelement(file, "json").band == unit().band
     for stated, found in ((0.07, StiffnessBands.uniform(0.07)), (None, None)):

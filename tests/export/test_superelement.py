@@ -10,7 +10,11 @@ from fe_drivetrain import export
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import max_difference
 from fe_drivetrain.common.stiffness_bands import StiffnessBands
-from fe_drivetrain.drivetrain_file.reading import library_component, library_scene
+from fe_drivetrain.drivetrain_file.reading import (
+    change_scene,
+    library_component,
+    library_scene,
+)
 from fe_drivetrain.elasticity.solve.condensation import keep_points
 from fe_drivetrain.export.from_component import component_superelement
 from fe_drivetrain.export.from_scene import (
@@ -20,14 +24,27 @@ from fe_drivetrain.export.from_scene import (
 )
 from fe_drivetrain.export.scene_export import superelement_of
 from fe_drivetrain.export.superelement import Origin, Superelement
+from fe_drivetrain.export.unit_statement import stated_bound, stated_rollers
 from fe_drivetrain.report.seal import drivetrain_hash
+from fe_drivetrain.shafts.fidelity.bearing_units import unit_bounds
 from fe_drivetrain.shafts.fidelity.ladder import shaft_level
 from fe_drivetrain.shafts.fidelity.shafts import beam_shaft, meridian_shaft
+from fe_drivetrain.shafts.fidelity.unit_faces import face_of
 
 pytestmark = pytest.mark.usefixtures("kept_between_runs")
 
 #: What the extra of a format installs.
-IMPORTS = {"hdf5": "h5py", "nastran": "pyNastran"}
+IMPORTS = {"hdf5": "h5py"}
+
+RIGID_SPRING = {"interface": "spring", "stiffness": ["rigid"] * 6}
+GIVEN = {
+    "housing": {"stiffness": np.diag([1e9, 1e9, 1e9, 1e8, 1e8, 1e8]).tolist(), "source": "given"}
+}
+TWO_ROWS = [{"x": -0.05, "contact_angle": 30.0}, {"x": 0.05, "contact_angle": -30.0}]
+ROLLERS = {
+    "interface": "rollers",
+    "rollers": {"count": 40, "stiffness": 4e8, "rows": TWO_ROWS},
+}
 
 READABLE = [
     pytest.param(name, marks=[pytest.mark.needs(IMPORTS[f.extra])] if f.extra else [])
@@ -54,6 +71,8 @@ def random_element(seed: int, mass: bool = True, free: bool = False) -> Superele
         supported=True,
         band=StiffnessBands(0.01, 0.002, 0.03),
         origin=Origin("a scene", "00ff", "2 meridian", "0.1 m", "fe-drivetrain"),
+        bound="stiff: a face; of others, the soft one",
+        rollers="none (0 of 80)",
     )
 
 
@@ -70,6 +89,9 @@ def test_round_trip(tmp_path: Path, format: str, seed: int, mass: bool) -> None:
     if mass and back.mass is not None:
         np.testing.assert_allclose(back.mass, element.mass, rtol=0, atol=30 * 10.0**-digits)
     assert len(back.points) == len(element.points)
+    if not export.FORMATS[format].left_out:
+        assert back.band == element.band
+        assert (back.bound, back.rollers) == (element.bound, element.rollers)
 
 
 @pytest.mark.parametrize("format", READABLE)
@@ -194,6 +216,53 @@ def test_torsion_of_the_free_shaft_is_g_j_over_l() -> None:
     expected = material.shear_modulus * np.pi / 32 * section.outer_diameter**4 / section.length
     assert element.stiffness[3, 3] == pytest.approx(expected, rel=1e-9)
     assert element.stiffness[3, 9] == pytest.approx(-expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("kind", "changes", "bound", "rollers"),
+    [
+        ("bonded", {}, "stiff: the face to the shaft keeps its shape", "the ring is bonded"),
+        ("spherical", {}, "stiff: the face to the shaft keeps its shape", "and no moment"),
+        ("spherical", {"interface": "averaged"}, "its face moves on average", "and no moment"),
+        ("spherical", {"interface": "rigid"}, "its face keeps its shape", "and no moment"),
+        ("bonded", RIGID_SPRING, "its face moves on average", "the joint is rigid"),
+        ("bonded", {**RIGID_SPRING, "stiffness": [*["rigid"] * 5, 1e9]}, "on average", "spring of"),
+        ("bonded", GIVEN, "taken as it is given", "the ring is bonded"),
+        ("bonded", ROLLERS, "stiff: the face", "2 rows of 40, each roller a spring of 4e+08 N/m"),
+    ],
+)
+def test_what_is_stated_of_a_unit_is_that_of_its_joint(
+    kind: str, changes: dict[str, object], bound: str, rollers: str
+) -> None:
+    """A unit has two bounds where another coupling is another solution, and is named so."""
+    name = "main_bearing"
+    own = {f"bearing_units.{name}.{key}": value for key, value in changes.items()}
+    scene = coarse_scene(kind, **own)
+    assert bound in stated_bound(scene, [name])
+    assert rollers in stated_rollers(scene, [name])
+    ways = {face_of(scene, name, True, coupling)[1] for coupling in ("rigid", "averaged")}
+    both = len(ways) == 2 and scene.bearing_unit(name).condensed is None
+    assert stated_bound(scene, [name]).startswith("stiff:") == both
+
+
+def test_a_unit_is_written_at_the_bound_that_it_states() -> None:
+    scene = coarse_scene("bonded")
+    unit, bounds = unit_superelement(scene, "main_bearing"), unit_bounds(scene, "main_bearing")
+    assert unit.bound.startswith("stiff:")
+    np.testing.assert_array_equal(unit.stiffness, bounds.stiff)
+    assert np.linalg.eigvalsh(bounds.stiff - bounds.soft)[0] > 0
+    # the band reaches to the soft bound
+    assert unit.band is not None
+    assert np.all(bounds.stiff - bounds.soft <= unit.band.half_widths(unit.stiffness))
+
+
+def test_units_that_differ_are_stated_by_name() -> None:
+    scene = library_scene("two_bearings")
+    first, second = (unit.bearing.name for unit in scene.bearing_units)
+    mixed = change_scene(scene, {f"bearing_units.{second}.housing": GIVEN["housing"]})
+    said = stated_bound(mixed, [first, second])
+    assert said.startswith(f"of {first} ")
+    assert f"; of {second} the only one, for the stiffness" in said
 
 
 def test_supported_drivetrain_and_bearing_unit() -> None:

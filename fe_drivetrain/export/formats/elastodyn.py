@@ -67,14 +67,33 @@ def write_torsion(
     InputError
         ``source`` is no such file, ``target`` exists, or a value is out of its range.
     """
-    source, target = Path(source), Path(target)
-    if not 0 < torsion.spring < np.inf or not 0 <= torsion.damper < np.inf:
-        raise InputError(
-            f"{SPRING} {torsion.spring:g} must be positive and {DAMPER} {torsion.damper:g} not "
-            "negative, and both finite"
-        )
+    target = Path(target)
+    _check(torsion)
     if target.exists() and not overwrite:
         raise InputError(f"{target} exists: name another file, or allow to overwrite it")
+    content, before = with_torsion(source, torsion, stated)
+    with atomic_path(target) as unfinished:
+        unfinished.write_bytes(content)
+    return before
+
+
+def with_torsion(source: str | Path, torsion: Torsion, stated: str = "") -> tuple[bytes, Torsion]:
+    """The content of an ElastoDyn input with another drivetrain spring and damper.
+
+    Parameters
+    ----------
+    source, torsion, stated : str or Path, Torsion, str
+        The same as for `write_torsion`, and so is what is refused.
+
+    Returns
+    -------
+    bytes
+        The new content.
+    Torsion
+        What stood in ``source``.
+    """
+    _check(torsion)
+    source = Path(source)
     text = _text(source)
     before = _torsion_of(source, text)
     for key, value in zip((SPRING, DAMPER), torsion, strict=True):
@@ -84,9 +103,15 @@ def write_torsion(
         text = text[: line.start()] + new + text[line.end("value") :]
     if stated:
         text = _with_statement(text, _line(source, text, SPRING), " ".join(stated.split()))
-    with atomic_path(target) as unfinished:
-        unfinished.write_bytes(text.encode(_ENCODING, "replace"))
-    return before
+    return text.encode(_ENCODING, "replace"), before
+
+
+def _check(torsion: Torsion) -> None:
+    if not 0 < torsion.spring < np.inf or not 0 <= torsion.damper < np.inf:
+        raise InputError(
+            f"{SPRING} {torsion.spring:g} must be positive and {DAMPER} {torsion.damper:g} not "
+            "negative, and both finite"
+        )
 
 
 def _with_statement(text: str, line: re.Match[str], stated: str) -> str:

@@ -28,8 +28,11 @@ _NUMBER = re.compile(r"[-+0-9.eE]+")
 def statement(element: Superelement) -> dict[str, str]:
     """The statement of a superelement, by key; numbers keep every digit."""
     origin = element.origin
+    band = "not known" if element.band is None else f"{element.band} of the stiffness"
     entries = {
         "superelement": element.name,
+        **element.of_units,
+        "band": band,
         "program": origin.program,
         "scene": origin.scene,
         "scene hash": origin.scene_hash,
@@ -39,7 +42,6 @@ def statement(element: Superelement) -> dict[str, str]:
         "units": UNITS,
         "degrees_of_freedom": f"{' '.join(MOTIONS)} of each point, in this order",
         "supports": "in the stiffness" if element.supported else "none: the body is free",
-        "band": "not known" if element.band is None else f"{element.band} of the stiffness",
     }
     for number, (name, position) in enumerate(zip(element.points, element.positions, strict=True)):
         x, y, z = position.tolist()
@@ -105,6 +107,9 @@ def element_of(
             supported,
             band,
             Origin(*(entries[key] for key in keys)),
+            # of bearing units alone, and not in earlier files
+            entries.get("bound", ""),
+            entries.get("rollers", ""),
         )
     except KeyError as error:
         raise InputError(

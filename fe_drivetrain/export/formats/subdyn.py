@@ -28,7 +28,7 @@ _INERTIAS = ("JMXX", "JMYY", "JMZZ", "JMXY", "JMXZ", "JMYZ")
 
 _INPUT = """\
 ----------- SubDyn input file: one spring element --------------------------------------
-{name}, scene {scene}; N, m, kg, rad; more at the end
+{name}, scene {scene}; N, m, kg, rad; {stated}; more at the end
 -------------------------- SIMULATION CONTROL ------------------------------------------
 False       Echo
 "DEFAULT"   SDdeltaT
@@ -180,9 +180,12 @@ def write(path: Path, element: Superelement, axes: Floats | None = None) -> None
     inertias = [
         inertia["xyz".index(name[2].lower()), "xyz".index(name[3].lower())] for name in _INERTIAS
     ]
+    band = "not known" if element.band is None else element.band.in_percent
+    stated = element.of_units | {"band": band}
     text = _INPUT.format(
         name=element.name,
         scene=element.origin.scene_hash or "unknown",
+        stated="; ".join(f"{key}: {text}" for key, text in stated.items()),
         modes=6 if mass else 0,
         zeros="\n".join([" ".join(["0.0"] * 6)] * 6),
         point=element.points[0],

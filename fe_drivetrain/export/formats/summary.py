@@ -20,6 +20,7 @@ from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.export.formats.superelement_json import OriginFile, read_content
 from fe_drivetrain.export.from_scene import scene_origin
 from fe_drivetrain.export.superelement import FRAME, UNITS
+from fe_drivetrain.export.unit_statement import stated_of_drivetrain
 from fe_drivetrain.foreign.assembly import solids_of_unit
 from fe_drivetrain.shafts.fidelity.bearing_units import UnitBounds, unit_bounds
 from fe_drivetrain.shafts.fidelity.ladder import LevelModel, assembly_level, shaft_level
@@ -80,7 +81,13 @@ class SummaryFile(_File):
     """The content of a summary."""
 
     kind: Literal["drivetrain summary"] = "drivetrain summary"
-    schema_version: Literal[1] = 1
+    schema_version: Literal[1, 2] = 2
+    bound: str = Field(
+        default="",
+        description="which bound of its bearing units the reactions are of; empty without such "
+        "units, and in version 1",
+    )
+    rollers: str = Field(default="", description="whether rollers of bearing units give")
     frame: str = FRAME
     units: str = UNITS
     shaft: ShaftFile
@@ -116,7 +123,10 @@ def summary(scene: Scene, level: int = 2) -> SummaryFile:
         model = assembly_level(scene)
     else:
         model = shaft_level(scene, level, springs, meridian if level == 2 else None)
+    bound, rollers = stated_of_drivetrain(scene, level)
     return SummaryFile(
+        bound=bound,
+        rollers=rollers,
         shaft=ShaftFile(**shaft_numbers(meridian)),
         bearing_units={name: _unit(unit) for name, unit in bounds.items()},
         reactions=_reactions(scene, model),

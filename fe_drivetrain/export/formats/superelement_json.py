@@ -86,8 +86,19 @@ class SuperelementFile(_File):
     """The content of a superelement's JSON file."""
 
     kind: Literal["superelement"] = "superelement"
-    schema_version: Literal[1, 2] = 2
+    schema_version: Literal[1, 2, 3] = 3
     name: str
+    bound: str = Field(
+        default="",
+        description="which bound of its bearing units the stiffness is; empty without such units, "
+        "as in versions 1 and 2",
+    )
+    rollers: str = Field(default="", description="whether rollers of bearing units give in it")
+    band: Band | None = Field(
+        description="uncertainty of the stiffness, of an entry relative to the roots of the "
+        "diagonal entries of its row and column; version 1 has one number for all"
+    )
+    origin: OriginFile
     frame: str = FRAME
     units: str = UNITS
     degrees_of_freedom: tuple[str, ...] = Field(
@@ -103,12 +114,7 @@ class SuperelementFile(_File):
         default=None, description="motions for unit forces; null where something is free to move"
     )
     mass: Rows | None
-    band: Band | None = Field(
-        description="uncertainty of the stiffness, of an entry relative to the roots of the "
-        "diagonal entries of its row and column; version 1 has one number for all"
-    )
     checks: dict[str, float] = Field(description="of the stiffness, with a unit diagonal")
-    origin: OriginFile
 
     @model_validator(mode="after")
     def _as_all_are(self) -> Self:
@@ -139,6 +145,8 @@ def content_of(element: Superelement) -> SuperelementFile:
         band=None if element.band is None else BandFile(**vars(element.band)),
         checks=element.checks(),
         origin=OriginFile(**vars(element.origin)),
+        bound=element.bound,
+        rollers=element.rollers,
     )
 
 
@@ -159,6 +167,8 @@ def element_of(content: SuperelementFile) -> Superelement:
         content.supported,
         _band(content.band),
         Origin(**content.origin.model_dump()),
+        content.bound,
+        content.rollers,
     )
 
 
