@@ -24,7 +24,7 @@ from fe_drivetrain.studies.part_gears import FlankUse
 from fe_drivetrain.studies.part_loads import NO_PARTS, CountedParts
 from fe_drivetrain.studies.transient_digest import FileDigest
 from fe_drivetrain.studies.transient_runs import LevelRun
-from fe_drivetrain.turbine_loads.histories.sites import Site
+from fe_drivetrain.turbine_loads.histories.sites import Site, require_winds
 
 LEAST = 1e-15
 """Damage from which on it is drawn."""
@@ -74,6 +74,25 @@ class PartQuestion:
     options: DamageOptions | None
     counted: CountedParts = NO_PARTS
     unnamed: tuple[str, ...] = ()
+
+    def require_winds(self, files: Sequence[Path], wind: float) -> None:
+        """Refuse files that a site's winds cannot weight, before any of them is computed.
+
+        Parameters
+        ----------
+        files : sequence of Path
+            All histories.
+        wind : float
+            Mean wind speed of the first [m/s]; NaN where it has none.
+
+        Raises
+        ------
+        InputError
+            The first has no wind speed, or is the only one.
+        """
+        asked = self.options is not None and self.options.site is not None
+        if asked and (len(files) == 1 or np.isnan(wind)):
+            require_winds(files[:1], [wind])
 
     def of_event(self, run: LevelRun, torque: float) -> PartUse | None:
         """What an event does, once."""

@@ -322,6 +322,22 @@ def test_peaks_are_held_against_limits_of_the_file() -> None:
         assert any("Beyond limits of the file" in note for note in found.notes) == bool(words)
 
 
+def test_a_limit_that_another_instant_of_the_brake_passes_is_in_the_verdict() -> None:
+    """The peak itself is within it; the figure of all instants is not."""
+    asked: dict[str, Any] = {"level": "torsional", "duration": 2.0, "damage": None}
+    values = {"off": 0.1, "braked": 0.5, "pitched": 0.2, "brake": 2.0}
+    free = transient(two_masses(), "stop", values, **asked)
+    assert free.by_instant is not None
+    own, most = free.extremes["torque of shaft"].largest, max(free.by_instant.peaks) * TORQUE
+    assert most > 1.01 * own
+    limits = {"peak_torque": {"shaft": 0.5 * (own + most)}}
+    found = transient(two_masses(limits=limits), "stop", values, **asked)
+    assert found.answer.verdict.endswith(", braked at another instant beyond its limit.")
+    statuses = {one.name: one.status for one in found.answer.figures}
+    assert statuses["peak torque of shaft"] == "good"
+    assert "bad" in statuses.values()
+
+
 def test_the_page_shows_damage_and_safety(tmp_path: Path) -> None:
     out = tmp_path / "out"
     typed = ["transient", "nrel_5mw", "dip", "--level", "torsional", "--duration", "1.2"]
