@@ -123,7 +123,10 @@ class PartQuestion:
 
 
 def part_question(
-    drivetrain: Drivetrain, machine: Machine, options: DamageOptions | None
+    drivetrain: Drivetrain,
+    machine: Machine,
+    options: DamageOptions | None,
+    strict: bool = True,
 ) -> PartQuestion:
     """Gears and bearings whose damage is asked for.
 
@@ -135,17 +138,19 @@ def part_question(
         Its machine.
     options : DamageOptions or None
         How damage is counted; None leaves it out.
+    strict : bool
+        Whether entries that are in no catalogue are refused, see `counted_parts`.
 
     Raises
     ------
     InputError
-        An entry of the catalogue is unknown.
+        An entry of the catalogue is unknown, and `strict`.
     """
     if options is None:
         return PartQuestion(drivetrain, None)
     if machine.not_given:  # bodies only turn, and have no forces of bearings
         return PartQuestion(drivetrain, options)
-    counted, unnamed = counted_parts(drivetrain, machine, options.lives, options.rollers)
+    counted, unnamed = counted_parts(drivetrain, machine, options.lives, options.rollers, strict)
     return PartQuestion(drivetrain, options, counted, unnamed)
 
 

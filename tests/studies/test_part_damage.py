@@ -257,6 +257,19 @@ def test_operation_is_damage_of_a_year(tmp_path: Path) -> None:
     assert [row["file"] for row in found.tables["file_damage"]] == ["a", "b"]
 
 
+def test_a_catalogue_of_ones_own_leaves_the_quantities_of_all_else() -> None:
+    """Nobody can give `advise` one: a bearing of it has no damage there, gears still do."""
+    own = read_drivetrain("nrel_5mw", {**SOFT, "gearbox.bearings.1.catalogue": "my_own"})
+    assert isinstance(own, Scene)
+    name = own.gearbox.bearings[1].name
+    lost = set(turning_quantities(WHOLE)) - set(turning_quantities(own))
+    assert lost
+    assert all(f".{name}." in one for one in lost)
+    with pytest.raises(InputError, match="my_own"):
+        counted_parts(own, machine_of(own), LifeOptions(), False)
+    assert name in counted_parts(own, machine_of(own), LifeOptions(), False, strict=False)[1]
+
+
 def test_quantities_are_those_of_events_and_lives(
     carried: TransientResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
