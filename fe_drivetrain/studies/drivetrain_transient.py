@@ -188,6 +188,7 @@ def transient(
         )
     steps, machine = Steps(report), machine_of(drivetrain)
     rated = rated_of(drivetrain, backlash)
+    named = None if level is None else WORDS.get(level)
     rungs = Rungs(plain_rungs(drivetrain, machine), {})
     if condensed:
         rungs = rungs_of(drivetrain, steps=steps)
@@ -204,7 +205,7 @@ def transient(
         tolerance,
         duration,
         step,
-        travels(event, planets),
+        travels(event, planets, machine, named),
         part_question(drivetrain, machine, damage),
     )
     if event == OPERATION:
@@ -354,7 +355,7 @@ def _at_rung(
     """A drivetrain at a level, and its event there with a step; that which it needs for None."""
     of = Prepared(machine, rung, rated, event.teeth, parts=counted)
     planned = event.plan(of.of, duration, rated.slip)
-    if planets_travel and has_planets(of.of):
+    if planets_travel and has_planets(machine, rung.level):
         planned = with_travelling_planets(of.of, planned)
     return of, lambda step: of.event(planned, event.step(of.of) if step is None else step)
 

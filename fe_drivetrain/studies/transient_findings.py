@@ -12,8 +12,7 @@ from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
-from fe_drivetrain.dynamics.bodies.levels import Level
-from fe_drivetrain.dynamics.time.machine_channels import Kind
+from fe_drivetrain.dynamics.time.machine_channels import Kind, of_planet
 from fe_drivetrain.procedure.coupling_offset import CouplingOffset
 from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP
 from fe_drivetrain.procedure.gearbox_offset import GearboxOffset
@@ -439,7 +438,7 @@ def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> lis
         said.append(f"Histories have no {' and no '.join(absent)}: their torque acts alone.")
     if any(not one.own_generator for one in files.values()):
         said.append("A file has no torque of its generator: a line of slip stands for it.")
-    if run.rung.level is not Level.TORSIONAL:
+    if any(of_planet(name) and run.extremes[name].kind == "bearing" for name in run.extremes):
         planets = "travel with their carrier" if run.planets_travel else "stand at one azimuth"
         said.append(f"Planets {planets}: forces of bearings are of that.")
     said.append("Damping is by ratios; swings decay as these say.")

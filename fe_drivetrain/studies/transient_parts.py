@@ -16,6 +16,7 @@ from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.report.suite.key_figures import KeyLimit
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.part_bearings import counted_parts
@@ -278,11 +279,15 @@ def part_figures(found: Findings, use: PartUse | None) -> list[KeyFigure]:
         name = max(damages, key=lambda each: damages[each])
         of = use.gears.get(name)
         band = use.bearings[name].band if of is None else of.band
+        limit: KeyLimit = {}
+        if damages[name] > 1.0:  # a life ends within it; below that no design life is known
+            limit = {"at_most": 1.0, "by": "the end of a life"}
         figures.append(
             found.value(
                 f"damage of {name}, each {use.per}",
                 damages[name],
                 band if np.isfinite(band) else None,
+                **limit,
             )
         )
     if use.bearings:

@@ -1,5 +1,6 @@
 """Gears and bearings in time: damage by hand, by ratings and lives of the same loads, limits."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from fe_drivetrain.dynamics.bodies.machine import machine_of
 from fe_drivetrain.gear.load_factors import LoadFactors
 from fe_drivetrain.gear.rating import contact_stress
 from fe_drivetrain.report.results import read_results
+from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies import (
     DamageOptions,
     GearOptions,
@@ -40,9 +42,10 @@ from fe_drivetrain.studies.gear_meshes import gear_meshes
 from fe_drivetrain.studies.gear_spectra import TorqueSpectrum
 from fe_drivetrain.studies.gear_stresses import MeshStresses
 from fe_drivetrain.studies.part_bearings import counted_parts
-from fe_drivetrain.studies.part_damage import times_a_year
+from fe_drivetrain.studies.part_damage import PartUse, times_a_year
 from fe_drivetrain.studies.part_gears import GearUses
 from fe_drivetrain.studies.part_loads import PartDigest
+from fe_drivetrain.studies.transient_parts import part_figures
 from fe_drivetrain.studies.turning_model import TurningModel
 from fe_drivetrain.studies.turning_quantities import turning_quantities
 from fe_drivetrain.turbine_loads.histories.sites import Site
@@ -255,6 +258,19 @@ def test_operation_is_damage_of_a_year(tmp_path: Path) -> None:
     assert_allclose(one.damage.flank, known.damage.flank, rtol=1e-2)
     assert one.of_histories[0] > one.of_histories[1] > 0.0
     assert [row["file"] for row in found.tables["file_damage"]] == ["a", "b"]
+
+
+@pytest.mark.parametrize(("damage", "status"), [(0.3, "none"), (3.0, "bad"), (np.inf, "bad")])
+def test_a_life_that_ends_within_a_year_or_an_event_is_beyond(
+    carried: TransientResult, damage: float, status: str
+) -> None:
+    """A page whose bearing lasts four months is not within all limits."""
+    assert carried.parts is not None
+    worn = replace(carried.parts.bearings["PLC-B"], damage={"L10": damage})
+    use = PartUse("year", 1.0, bearings={"PLC-B": worn})
+    (figure, _) = part_figures(Findings(), use)
+    assert figure.name == "damage of PLC-B, each year"
+    assert figure.status == status
 
 
 def test_a_catalogue_of_ones_own_leaves_the_quantities_of_all_else() -> None:
