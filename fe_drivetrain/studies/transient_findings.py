@@ -435,7 +435,8 @@ def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> lis
         said.append("Damage of teeth has K_v beside vibrations of meshes that are in the forces.")
     absent = sorted({one.absent for one in files.values() if one.absent})
     if absent:
-        said.append(f"Histories have no {' and no '.join(absent)}: their torque acts alone.")
+        which = "Histories" if all(one.absent for one in files.values()) else "Some histories"
+        said.append(f"{which} have no {' and no '.join(absent)}: their torque acts alone.")
     if any(not one.own_generator for one in files.values()):
         said.append("A file has no torque of its generator: a line of slip stands for it.")
     if any(of_planet(name) and run.extremes[name].kind == "bearing" for name in run.extremes):
