@@ -375,7 +375,9 @@ def state_answer(
     beyond = _beyond(of, beside)
     if beyond:  # what else happens stands in the figures
         verdict = f"{verdict.partition(';')[0].removesuffix('.')}, {beyond}."
-    found.answer(QUESTIONS[event], verdict, shown, cautions=_cautions(event, run, files))
+    found.answer(
+        QUESTIONS[event], verdict, shown, cautions=_cautions(event, run, files, beside.instants)
+    )
 
 
 def _beyond(of: _Answered, beside: Beside) -> str:
@@ -419,12 +421,20 @@ def _say_level(
     )
 
 
-def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> list[str]:
+def _cautions(
+    event: str, run: LevelRun, files: Mapping[str, FileDigest], instants: ByInstant | None
+) -> list[str]:
     """What limits the verdict, most severe first."""
     said = []
     if event == "stop":
+        others = ""
+        if instants is not None:
+            others = (
+                f"; at others the {instants.channel} reaches {max(instants.peaks):.2f} of rated"
+            )
         said.append(
-            "Peaks and damage are of one instant of the brake within a swing of the first mode."
+            "Peaks and damage are of one instant of the brake within a swing of the first "
+            f"mode{others}."
         )
     if event in ("stop", "grid_loss", "dip"):
         said.append("Times and controls of the event, where not stated, are assumptions.")
