@@ -125,7 +125,7 @@ def run(run: Run, page: Page) -> None:
 
 def own(run: Run, page: Page) -> None:
     """Mesh orders of a user's drivetrain, and what they cross in its range of speeds."""
-    chosen = run.drivetrain("")
+    chosen = run.drivetrain("", gears=True)
     chosen.state(page, topic="Mesh orders and all their crossings with modes")
     table, speeds = gear_table(chosen.drivetrain), chosen.rotor_speeds()
     stages = [Toothed(*meshing) for meshing in machine_of(chosen.drivetrain).meshing]

@@ -72,7 +72,7 @@ def run(run: Run, page: Page) -> None:
 
 def own(run: Run, page: Page) -> None:
     """Contacts of a user's drivetrain at the torque of its rated power."""
-    chosen = run.drivetrain("")
+    chosen = run.drivetrain("", gears=True)
     chosen.state(page, topic="Contact stresses of gears and their depths at rated torque")
     machine = machine_of(chosen.drivetrain)
     with run.step("contacts"):

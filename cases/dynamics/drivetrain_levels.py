@@ -62,7 +62,7 @@ def run(run: Run, page: Page) -> None:
     needed: list[Record] = []
     ladders: list[tuple[Machine, Sequence[Answer]]] = []
     for name, operation in operations(run).items():
-        chosen = run.drivetrain(name)
+        chosen = run.drivetrain(name, gears=True)
         machine = machine_of(chosen.drivetrain)
         page.about(chosen.drivetrain, name)
         rungs = [*RUNGS, *more_rungs(run, name)]
@@ -201,7 +201,7 @@ def operations(run: Run) -> dict[str, Operation]:
         if "torque" in run.settings:
             torque = 1e3 * run.positive("torque")
         else:
-            torque = run.drivetrain("").rated_torque()
+            torque = run.drivetrain("", gears=True).rated_torque()
         moment = 1e3 * run.positive("moment") if "moment" in run.settings else torque
         return {name: Operation(torque, moment)}
     for key in ("torque", "moment", "speed"):
@@ -305,7 +305,7 @@ def rotor_speed(run: Run, name: str) -> float:
         return RPM[name]
     if "speed" in run.settings:
         return run.positive("speed")
-    return run.drivetrain(name).rotor_speeds()[1] * 30 / np.pi
+    return run.drivetrain(name, gears=True).rotor_speeds()[1] * 30 / np.pi
 
 
 def show_turning(page: Page, name: str, machine: Machine, rpm: float) -> None:

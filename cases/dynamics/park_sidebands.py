@@ -54,7 +54,7 @@ RINGING = "ringing of the low-speed shaft [Hz]"
 )
 def run(run: Run, page: Page) -> None:
     """Distance of sidebands from the mesh line after a torque step, and with an eccentric gear."""
-    chosen = run.drivetrain("park_2021")
+    chosen = run.drivetrain("park_2021", gears=True)
     if chosen.own:
         own(run, page, chosen)
         return

@@ -81,7 +81,7 @@ PHASES = (0.0, 0.25, 0.5, 0.75)
 )
 def run(run: Run, page: Page) -> None:
     """Each study of the source with its torque balanced, printed words beside figures."""
-    chosen = run.drivetrain("park_2021")
+    chosen = run.drivetrain("park_2021", gears=True)
     if chosen.own:
         own(run, page, chosen)
         return

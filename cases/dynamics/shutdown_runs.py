@@ -62,7 +62,7 @@ def stop(one: Rated, dt: float, late: float = 0.0, end: float = SEQUENCE.end) ->
     Raises
     ------
     InputError
-        Its own brake does not stop it before the end.
+        The brake does not stop it before the end.
     """
     braked = SEQUENCE.braked + late
 
@@ -74,18 +74,18 @@ def stop(one: Rated, dt: float, late: float = 0.0, end: float = SEQUENCE.end) ->
         after = found.motion.times >= braked
         return peak_between(found.ratio(one.slow)[after]) - PEAK
 
-    if one.brake is not None:
-        found = Stopped(one, one.brake, done(one.brake, end))
-        if "sticks" not in [what for _, what in found.done.motion.braking.events]:
-            raise InputError(
-                f"brake of {one.letter!r} is {one.brake:.3g} times the generator's rated torque, "
-                f"grows in {one.rise:g} s, and does not stop the drivetrain {end - braked:g} s "
-                "after it comes: give a larger brake.torque or a smaller brake.rise"
-            )
-        return found
-    # the peak goes with the torque of the brake, as long as the disc turns
-    brake = float(newton(excess, 1.0, x1=3.0, tol=1e-6))
-    return Stopped(one, brake, done(brake, end))
+    brake = one.brake
+    if brake is None:  # the peak goes with the torque of the brake, as long as the disc turns
+        brake = float(newton(excess, 1.0, x1=3.0, tol=1e-6))
+    found = Stopped(one, brake, done(brake, end))
+    if "sticks" not in [what for _, what in found.done.motion.braking.events]:
+        given = "" if one.brake is not None else ", since its file states none,"
+        raise InputError(
+            f"brake of {one.letter!r} is{given} {brake:.3g} times the generator's rated torque, "
+            f"grows in {one.rise:g} s, and does not stop the drivetrain {end - braked:g} s "
+            "after it comes: give a larger brake.torque or a smaller brake.rise"
+        )
+    return found
 
 
 def check_peaks(

@@ -135,7 +135,7 @@ def run(run: Run, page: Page) -> None:
 
 def own(run: Run, page: Page) -> None:
     """Damage of the teeth of a user's drivetrain at the same site."""
-    chosen = run.drivetrain("")
+    chosen = run.drivetrain("", gears=True)
     chosen.state(page, topic="Damage of gears over twenty years")
     least, speed = chosen.rotor_speeds()
     found, ratings = own_ratings(chosen, page)

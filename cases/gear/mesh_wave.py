@@ -94,7 +94,7 @@ CLEAR = 0.02
 
 def own(run: Run, page: Page) -> None:
     """Waves of the meshes of a user's drivetrain, at their contact ratios, with the right sign."""
-    chosen = run.drivetrain("")
+    chosen = run.drivetrain("", gears=True)
     chosen.state(page, topic="Pairs of teeth in contact over a period")
     meshes = given_meshes(chosen, machine_of(chosen.drivetrain), {}, page)
     at = (np.arange(4000) + 0.5) / 4000

@@ -77,7 +77,7 @@ def run(run: Run, page: Page) -> None:
 
 def own(run: Run, page: Page) -> None:
     """Geometry and stiffness of all meshes of a user's drivetrain, from its teeth."""
-    chosen = run.drivetrain("")
+    chosen = run.drivetrain("", gears=True)
     chosen.state(page, topic="Geometry and stiffness of all meshes of gears")
     machine = machine_of(chosen.drivetrain)
     pairs = machine_pairs(machine)

@@ -75,8 +75,6 @@ def given_meshes(
     InputError
         No mesh has all of its gears' data.
     """
-    if not machine.stages:
-        raise InputError(f"drivetrain {chosen.name!r} has no gears: give gearbox.stages")
     meshes, left_out = gear_meshes(machine, strengths)
     if not meshes:
         raise InputError(

@@ -15,7 +15,7 @@ HERO = "Safety of the flanks S_H of all gears at rated torque"
 
 def own_rating(run: Run, page: Page) -> None:
     """Rate the meshes of a user's drivetrain: contact, root, dynamics, over twenty years."""
-    chosen = run.drivetrain("")
+    chosen = run.drivetrain("", gears=True)
     chosen.state(page, topic="Gears rated by ISO 6336")
     own, ratings = own_ratings(chosen, page)
     with run.step("ratings"):

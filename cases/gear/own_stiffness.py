@@ -24,7 +24,7 @@ ALIKE = 0.05
 
 def own_stiffness(run: Run, page: Page) -> None:
     """Stiffness of all meshes of a user's drivetrain in three ways."""
-    chosen = run.drivetrain("")
+    chosen = run.drivetrain("", gears=True)
     chosen.state(page, topic="Mesh stiffness of the file, by ISO 6336-1 and by a formula")
     machine = machine_of(chosen.drivetrain)
     meshes = given_meshes(chosen, machine, {}, page)

@@ -144,7 +144,7 @@ def run(run: Run, page: Page) -> None:
 
 def own(run: Run, page: Page) -> None:
     """Misaligned meshes of a user's drivetrain at its rated torque."""
-    chosen = run.drivetrain("")
+    chosen = run.drivetrain("", gears=True)
     chosen.state(page)
     found = own_meshes(chosen, page)
     faces = {

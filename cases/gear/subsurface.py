@@ -170,7 +170,7 @@ def run(run: Run, page: Page) -> None:
 
 def own(run: Run, page: Page) -> None:
     """Pressures and depths of the meshes of a user's drivetrain at its rated torque."""
-    chosen = run.drivetrain("")
+    chosen = run.drivetrain("", gears=True)
     chosen.state(page, topic="Stress below the flanks of gears at rated torque")
     found = own_meshes(chosen, page)
     unit = LineContact(1e6, 0.02, STEEL)

@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear import published_hours as printed
 from fe_drivetrain.cases.gear.turbine_years import RATED_WIND, Duty, operation
-from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics import Machine, machine_of
 from fe_drivetrain.gear import ParallelStage, PlanetaryStage, loads_per_turn
@@ -75,12 +75,10 @@ CLOSEST = 1e-12
 
 def own(run: Run, page: Page) -> None:
     """Loads of the teeth of a user's drivetrain in twenty years, at the winds of Table 7.1."""
-    chosen = run.drivetrain("")
+    chosen = run.drivetrain("", gears=True)
     chosen.state(page, topic="Loads of gear teeth over twenty years")
     least, speed = chosen.rotor_speeds()
     machine = machine_of(chosen.drivetrain)
-    if not machine.stages:
-        raise InputError(f"drivetrain {chosen.name!r} has no gears: give gearbox.stages")
     turns = loads_per_turn([counted_stage(stage) for stage in machine.stages])
     duty = Duty(1.0, least, speed, 1.0)  # turns do not depend on the power
     rotor = {wind: float(n.sum()) for wind, _, n in operation(duty)}

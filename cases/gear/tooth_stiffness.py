@@ -117,7 +117,7 @@ def own(run: Run, page: Page, steps: int) -> None:
     InputError
         The drivetrain has no such mesh.
     """
-    chosen = run.drivetrain("")
+    chosen = run.drivetrain("", gears=True)
     chosen.state(page)
     meshes = given_meshes(chosen, machine_of(chosen.drivetrain), {}, page)
     pairs = {name: mesh.pair for name, mesh in meshes.items() if is_plane(mesh.pair)}

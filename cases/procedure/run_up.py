@@ -112,7 +112,7 @@ def passed_by(chosen: ChosenDrivetrain) -> Passed:
 )
 def run(run: Run, page: Page) -> None:
     """Register against modes; a run-up by the whole matrices, against exact modes."""
-    chosen = run.drivetrain(DEFAULT)
+    chosen = run.drivetrain(DEFAULT, gears=True)
     chosen.state(page)
     of = passed_by(chosen)
     system = with_proportional_damping(machine_system(of.machine), RATIO / (np.pi * of.at))

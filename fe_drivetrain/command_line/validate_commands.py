@@ -31,6 +31,9 @@ _ON_DRIVETRAINS = (
 _FILES = "outputs/*.outb"
 """Histories in commands to be copied, as in the examples of all commands: a user has others."""
 
+_VALUES = {"offset": ("coupling=1000000", "y=0.001"), "base": ("file=base.csv",)}
+"""Values of events that do not happen without them, to be replaced by one's own."""
+
 
 def ready_commands(result: ValidateResult, path: Path) -> list[str]:
     """Commands to be copied, with all names and paths quoted; the last one validates again.
@@ -159,8 +162,10 @@ def _in_time(name: str, drivetrain: str) -> list[str] | None:
     event = next((e for one in EVENT_NAMES if name.endswith(e := one.replace("_", "-"))), None)
     if event is None:
         return None
+    values = [word for value in _VALUES.get(event, ()) for word in ("--value", value)]
     # samples are what step 6 compares
-    return [drivetrain, event, *(["--loads", _FILES, "--csv"] if event == OPERATION else [])]
+    histories = ["--loads", _FILES, "--csv"] if event == OPERATION else []
+    return [drivetrain, event, *values, *histories]
 
 
 def _quantity(project: Project) -> list[str]:

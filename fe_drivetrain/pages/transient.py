@@ -76,7 +76,7 @@ def _extremes(page: Page, result: TransientResult) -> None:
     )
     if "instants" in result.tables:
         page.section("Instants of the brake")
-        page.table("Peak of the last shaft by the instant of the brake", result.tables["instants"])
+        page.table("Peak of the torque by the instant of the brake", result.tables["instants"])
     if "alternating" in result.tables:
         page.section("Forces beside the axis")
         page.table(

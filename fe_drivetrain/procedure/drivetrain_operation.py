@@ -74,7 +74,8 @@ class Operation:
         until : float, optional
             Time at which to end, the last sample's where left out [s].
         """
-        state, end = self.start, min(until or self.end, self.end)
+        state = self.start
+        end = self.end if until is None else min(until, self.end)
         turning = self.of.turning
         while end - state.time > 0.5 * step:
             count = min(AT_ONCE, round((end - state.time) / step))

@@ -19,6 +19,7 @@ from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics.bodies.equations import Equations, Loads, steady
 from fe_drivetrain.dynamics.bodies.levels import Level
+from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.bodies.steady_state import free_motions, wind_up
 from fe_drivetrain.dynamics.time.integration import Phase
 from fe_drivetrain.dynamics.time.motion import Motion, State
@@ -36,7 +37,7 @@ _TURN = 1e-3
 """Azimuth over which the winding at the beginning is differentiated [rad]."""
 
 
-def travels(event: str, planets: str) -> bool:
+def travels(event: str, planets: str, machine: Machine, level: Level | None = None) -> bool:
     """Whether planets travel in an event.
 
     Parameters
@@ -45,11 +46,15 @@ def travels(event: str, planets: str) -> bool:
         Name of the event.
     planets : str
         "stand" or "travel".
+    machine : Machine
+        The machine whose planets these are.
+    level : Level, optional
+        The one level that is asked for.
 
     Raises
     ------
     InputError
-        It is neither of these, or the speed changes too far in the event.
+        It is neither of these, the speed changes too far in the event, or there are no planets.
     """
     require_known("planets", planets, (STAND, TRAVEL))
     able = [name for name, kind in EVENTS.items() if kind.keeps_speed]
@@ -58,13 +63,19 @@ def travels(event: str, planets: str) -> bool:
             f"planets travel at a speed that is kept, in {', '.join(able)}, but the speed changes "
             f"in {event}: let {argument('planets')} stand"
         )
+    if planets == TRAVEL and not has_planets(machine, Level.RIGID if level is None else level):
+        where = f" at the level {level.name.lower()}" if level is Level.TORSIONAL else ""
+        raise InputError(
+            f"{machine.title!r} has no planets that could travel{where}: let "
+            f"{argument('planets')} stand"
+        )
     return planets == TRAVEL
 
 
-def has_planets(of: Running) -> bool:
-    """Whether there are planets with motions beside their carrier's."""
-    planetary = any(isinstance(stage, PlanetaryData) for stage in of.machine.stages)
-    return planetary and of.level is not Level.TORSIONAL
+def has_planets(machine: Machine, level: Level) -> bool:
+    """Whether a machine has planets with motions beside their carrier's at a level."""
+    planetary = any(isinstance(stage, PlanetaryData) for stage in machine.stages)
+    return planetary and level is not Level.TORSIONAL
 
 
 def with_travelling_planets(of: Running, planned: Planned) -> Planned:

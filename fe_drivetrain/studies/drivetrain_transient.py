@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -100,6 +101,12 @@ EVENT_NAMES = (OPERATION, *EVENTS)
 SLOW = 2e-3
 """Damping ratio of the first mode below which swings need eighty periods to fall to a third."""
 
+STEPS = (1e-7, 1.0)
+"""Shortest and longest step of integration [s]."""
+
+LONGEST = 3600.0
+"""Longest event [s]."""
+
 WINDOW = 60.0
 """Part of the first history in which levels and steps are compared [s]."""
 
@@ -181,6 +188,7 @@ def transient(
         )
     steps, machine = Steps(report), machine_of(drivetrain)
     rated = rated_of(drivetrain, backlash)
+    named = None if level is None else WORDS.get(level)
     rungs = Rungs(plain_rungs(drivetrain, machine), {})
     if condensed:
         rungs = rungs_of(drivetrain, steps=steps)
@@ -197,7 +205,7 @@ def transient(
         tolerance,
         duration,
         step,
-        travels(event, planets),
+        travels(event, planets, machine, named),
         part_question(drivetrain, machine, damage),
     )
     if event == OPERATION:
@@ -347,7 +355,7 @@ def _at_rung(
     """A drivetrain at a level, and its event there with a step; that which it needs for None."""
     of = Prepared(machine, rung, rated, event.teeth, parts=counted)
     planned = event.plan(of.of, duration, rated.slip)
-    if planets_travel and has_planets(of.of):
+    if planets_travel and has_planets(machine, rung.level):
         planned = with_travelling_planets(of.of, planned)
     return of, lambda step: of.event(planned, event.step(of.of) if step is None else step)
 
@@ -383,13 +391,18 @@ def event_at(
 def _duration(asked: _Asked, event: Event) -> float:
     if asked.duration is None:
         return event.lasts(asked.rated.running(asked.machine, RUNGS[0]))
-    longest = 3600.0
-    if not 0.0 < asked.duration <= longest:
-        raise InputError(
-            f"{argument('duration')} is {asked.duration:g} s but must be above 0 s and at most "
-            f"{longest:g} s: change it"
-        )
+    _require_span("duration", asked.duration, (0.0, LONGEST))
     return asked.duration
+
+
+def _require_span(name: str, value: float | None, within: tuple[float, float]) -> None:
+    """Refuse a time that is out of its range, whose lower end is 0 s where that is left out."""
+    low, high = within
+    if value is None or (low <= value <= high and value > 0.0):
+        return
+    least = f"from {low:g}" if low else "above 0 s"
+    most = "" if high == inf else f" to {high:g} s" if low else f" and at most {high:g} s"
+    raise InputError(f"{argument(name)} is {value:g} s but must be {least}{most}: change it")
 
 
 def _compared(
@@ -400,10 +413,7 @@ def _compared(
     steps: Steps,
 ) -> tuple[list[LevelRun], int]:
     """Runs at all levels, the chosen and the finest with their bands; number of the chosen one."""
-    if step is not None and not 1e-7 <= step <= 1.0:
-        raise InputError(
-            f"{argument('step')} is {step:g} s but must be from 1e-07 to 1 s: change it"
-        )
+    _require_span("step", step, STEPS)
     with steps.step("compiled loops"):
         _load_loops()
     runs, again = [], []
@@ -439,10 +449,15 @@ def _operated(
     if asked.values:
         raise InputError(f"operation has no value {next(iter(asked.values))!r}: leave it out")
     options = replace(
-        options, step=asked.step or options.step, until=asked.duration or options.until
+        options,
+        step=options.step if asked.step is None else asked.step,
+        until=options.until if asked.duration is None else asked.duration,
     )
+    _require_span("duration", options.until, (0.0, inf))
+    _require_span("step", options.step, STEPS)
     first = read_drive(files[0], options.names, options.skip)
-    window = min(options.until or WINDOW, WINDOW, first.seconds)
+    asked.parts.require_winds(files, first.wind)
+    window = min(WINDOW if options.until is None else options.until, WINDOW, first.seconds)
 
     def at(rung: Rung) -> Callable[[float | None], LevelRun]:
         counted = asked.parts.counted

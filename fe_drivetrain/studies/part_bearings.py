@@ -21,7 +21,11 @@ from fe_drivetrain.studies.rolling_bearings import own_rules, profile_of
 
 
 def counted_parts(
-    drivetrain: Drivetrain, machine: Machine, options: LifeOptions, rollers: bool
+    drivetrain: Drivetrain,
+    machine: Machine,
+    options: LifeOptions,
+    rollers: bool,
+    strict: bool = True,
 ) -> tuple[CountedParts, tuple[str, ...]]:
     """Bearings that have an entry of the catalogue, and the names of the others.
 
@@ -35,11 +39,14 @@ def counted_parts(
         Catalogues, lubricants and rules of lives.
     rollers : bool
         Whether rollers are brought into equilibrium.
+    strict : bool
+        Whether entries that are in no catalogue are refused; else their bearings are among the
+        others, as where nobody can give a catalogue.
 
     Raises
     ------
     InputError
-        An entry is unknown, or of a bearing that there is not.
+        An entry is unknown and `strict`, or of a bearing that there is not.
     """
     choices, rules = options.choices, options.rules
     entries = {**catalogue_entries(drivetrain), **choices.named}
@@ -52,6 +59,8 @@ def counted_parts(
     names = [*(bearing.name for bearing in machine.bearings), *planets]
     require_bearings(names, entries, choices.only)
     known, main = read_bearing_catalogue(*choices.catalogues), main_names(machine)
+    if not strict:
+        entries = {name: entry for name, entry in entries.items() if entry in known}
     oil = options.oil(drivetrain.operation)
     found = []
     for name in names:

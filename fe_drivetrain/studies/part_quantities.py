@@ -44,7 +44,7 @@ def part_quantities(drivetrain: Drivetrain, machine: Machine) -> list[TurningQua
     turns = bool(machine.not_given)
     bearings = []
     if not turns:
-        counted, _ = counted_parts(drivetrain, machine, DAMAGE.lives, False)
+        counted, _ = counted_parts(drivetrain, machine, DAMAGE.lives, False, strict=False)
         bearings = [one.name for one in counted.bearings]
     meshes: list[str] = []
     with suppress(InputError):  # without gears

@@ -12,8 +12,7 @@ from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS
-from fe_drivetrain.dynamics.bodies.levels import Level
-from fe_drivetrain.dynamics.time.machine_channels import Kind
+from fe_drivetrain.dynamics.time.machine_channels import Kind, of_planet
 from fe_drivetrain.procedure.coupling_offset import CouplingOffset
 from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP
 from fe_drivetrain.procedure.gearbox_offset import GearboxOffset
@@ -46,8 +45,8 @@ ENERGY, ENERGY_OF_LAWS = 1e-6, 1e-2
 
 SETTLED = 0.05
 """What the step may leave uncertain of an extreme, over it, before it is said to be open."""
-STILL = 1e-6
-"""Alternating force over the largest, below which it is round-off of a steady one."""
+STILL = 1e-4
+"""Share of the largest force below which what an offset changes or lets alternate is nothing."""
 MINOR = 0.1
 """Share of the largest extreme of a kind below which what is open of one is a caution alone."""
 
@@ -373,11 +372,23 @@ def state_answer(
         _say_level(found, runs, number, quantity, error)
     last = [*limit_figure(found, beside.limits, extremes), *part_figures(found, beside.use)]
     shown = [*figures[: 6 - len(last)], *last]
-    hardest = hardest_limit(beside.limits, extremes)
-    if hardest is not None and extremes[hardest].largest > beside.limits[hardest]:
-        shaft = hardest.removeprefix("torque of ")
-        verdict = f"{verdict.removesuffix('.')}, beyond the limit of the {shaft}."
-    found.answer(QUESTIONS[event], verdict, shown, cautions=_cautions(event, run, files))
+    beyond = _beyond(of, beside)
+    if beyond:  # what else happens stands in the figures
+        verdict = f"{verdict.partition(';')[0].removesuffix('.')}, {beyond}."
+    found.answer(
+        QUESTIONS[event], verdict, shown, cautions=_cautions(event, run, files, beside.instants)
+    )
+
+
+def _beyond(of: _Answered, beside: Beside) -> str:
+    """Which limit is passed, now or with the brake at another instant; empty where none is."""
+    hardest, instants = hardest_limit(beside.limits, of.extremes), beside.instants
+    if hardest is not None and of.extremes[hardest].largest > beside.limits[hardest]:
+        return f"beyond the limit of the {hardest.removeprefix('torque of ')}"
+    if instants is None or instants.channel not in beside.limits:
+        return ""
+    peak = max(instants.peaks) * abs(of.extremes[instants.channel].rated)
+    return "braked at another instant beyond its limit" * (peak > beside.limits[instants.channel])
 
 
 def _by_instant(
@@ -410,12 +421,20 @@ def _say_level(
     )
 
 
-def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> list[str]:
+def _cautions(
+    event: str, run: LevelRun, files: Mapping[str, FileDigest], instants: ByInstant | None
+) -> list[str]:
     """What limits the verdict, most severe first."""
     said = []
     if event == "stop":
+        others = ""
+        if instants is not None:
+            others = (
+                f"; at others the {instants.channel} reaches {max(instants.peaks):.2f} of rated"
+            )
         said.append(
-            "Peaks and damage are of one instant of the brake within a swing of the first mode."
+            "Peaks and damage are of one instant of the brake within a swing of the first "
+            f"mode{others}."
         )
     if event in ("stop", "grid_loss", "dip"):
         said.append("Times and controls of the event, where not stated, are assumptions.")
@@ -426,10 +445,11 @@ def _cautions(event: str, run: LevelRun, files: Mapping[str, FileDigest]) -> lis
         said.append("Damage of teeth has K_v beside vibrations of meshes that are in the forces.")
     absent = sorted({one.absent for one in files.values() if one.absent})
     if absent:
-        said.append(f"Histories have no {' and no '.join(absent)}: their torque acts alone.")
+        which = "Histories" if all(one.absent for one in files.values()) else "Some histories"
+        said.append(f"{which} have no {' and no '.join(absent)}: their torque acts alone.")
     if any(not one.own_generator for one in files.values()):
         said.append("A file has no torque of its generator: a line of slip stands for it.")
-    if run.rung.level is not Level.TORSIONAL:
+    if any(of_planet(name) and run.extremes[name].kind == "bearing" for name in run.extremes):
         planets = "travel with their carrier" if run.planets_travel else "stand at one azimuth"
         said.append(f"Planets {planets}: forces of bearings are of that.")
     said.append("Damping is by ratios; swings decay as these say.")
@@ -493,26 +513,38 @@ def _run_up(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFi
 
 def _offset(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
     rows = alternating_rows(of.run)
-    most = max(rows, key=lambda row: float(row["once a turn [kN]"] + row["twice a turn [kN]"]))
     moved = max(rows, key=lambda row: abs(float(row["change of the mean [kN]"])))
-    name = str(moved["force"])
-    change = value_text(float(moved["change of the mean [kN]"]), "kN")
-    swing = float(most["once a turn [kN]"]) + float(most["twice a turn [kN]"])
-    figures = [of.found.value(f"{name}, change of its mean [kN]", moved["change of the mean [kN]"])]
-    changed = abs(float(moved["change of the mean [kN]"]))
-    if swing < STILL * max(changed, float(most["largest [kN]"])):
-        figures.append(of.found.value(f"{name}, largest [kN]", moved["largest [kN]"]))
-        verdict = f"The offset changes the {name} by {change}, and nothing alternates."
-        return verdict, [*figures, *_others(of)]
-    verdict = (
-        f"The offset changes the {name} by {change}; the {most['force']} alternates by up to "
-        f"{value_text(swing, 'kN')} each turn."
-    )
+    name, by = str(moved["force"]), float(moved["change of the mean [kN]"])
+    verdict = "The offset changes no mean force of a bearing or mesh"
+    figures: list[KeyFigure] = []
+    changes = abs(by) > _uncertain(moved)
+    if changes:
+        band = float(moved["± of these [kN]"])
+        verdict = f"The offset changes the {name} by {value_text(by, 'kN', band, with_band=False)}"
+        figures.append(of.found.value(f"{name}, change of its mean [kN]", by, band))
+    swinging = [row for row in rows if _swing(row) > max(_uncertain(row), STILL * abs(by))]
+    if not swinging:
+        if changes:
+            figures.append(of.found.value(f"{name}, largest [kN]", moved["largest [kN]"]))
+        return f"{verdict}, and nothing alternates.", [*figures, *_others(of)]
+    most = max(swinging, key=_swing)
+    swing = value_text(_swing(most), "kN")
+    verdict += f"; the {most['force']} alternates by up to {swing} each turn."
     figures += [
         of.found.value(f"{most['force']}, {key}", most[key])
         for key in ("once a turn [kN]", "twice a turn [kN]", "largest [kN]")
     ]
     return verdict, figures
+
+
+def _swing(row: Record) -> float:
+    """What alternates with the generator's turns [kN]."""
+    return float(row["once a turn [kN]"]) + float(row["twice a turn [kN]"])
+
+
+def _uncertain(row: Record) -> float:
+    """What a force has to change by, or alternate, to count [kN]."""
+    return max(float(row["± of these [kN]"]), STILL * abs(float(row["largest [kN]"])))
 
 
 def _base(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:

@@ -16,6 +16,7 @@ from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.report.suite.key_figures import KeyLimit
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.part_bearings import counted_parts
@@ -24,7 +25,7 @@ from fe_drivetrain.studies.part_gears import FlankUse
 from fe_drivetrain.studies.part_loads import NO_PARTS, CountedParts
 from fe_drivetrain.studies.transient_digest import FileDigest
 from fe_drivetrain.studies.transient_runs import LevelRun
-from fe_drivetrain.turbine_loads.histories.sites import Site
+from fe_drivetrain.turbine_loads.histories.sites import Site, require_winds
 
 LEAST = 1e-15
 """Damage from which on it is drawn."""
@@ -75,6 +76,25 @@ class PartQuestion:
     counted: CountedParts = NO_PARTS
     unnamed: tuple[str, ...] = ()
 
+    def require_winds(self, files: Sequence[Path], wind: float) -> None:
+        """Refuse files that a site's winds cannot weight, before any of them is computed.
+
+        Parameters
+        ----------
+        files : sequence of Path
+            All histories.
+        wind : float
+            Mean wind speed of the first [m/s]; NaN where it has none.
+
+        Raises
+        ------
+        InputError
+            The first has no wind speed, or is the only one.
+        """
+        asked = self.options is not None and self.options.site is not None
+        if asked and (len(files) == 1 or np.isnan(wind)):
+            require_winds(files[:1], [wind])
+
     def of_event(self, run: LevelRun, torque: float) -> PartUse | None:
         """What an event does, once."""
         if self.options is None or run.parts is None:
@@ -104,7 +124,10 @@ class PartQuestion:
 
 
 def part_question(
-    drivetrain: Drivetrain, machine: Machine, options: DamageOptions | None
+    drivetrain: Drivetrain,
+    machine: Machine,
+    options: DamageOptions | None,
+    strict: bool = True,
 ) -> PartQuestion:
     """Gears and bearings whose damage is asked for.
 
@@ -116,17 +139,19 @@ def part_question(
         Its machine.
     options : DamageOptions or None
         How damage is counted; None leaves it out.
+    strict : bool
+        Whether entries that are in no catalogue are refused, see `counted_parts`.
 
     Raises
     ------
     InputError
-        An entry of the catalogue is unknown.
+        An entry of the catalogue is unknown, and `strict`.
     """
     if options is None:
         return PartQuestion(drivetrain, None)
     if machine.not_given:  # bodies only turn, and have no forces of bearings
         return PartQuestion(drivetrain, options)
-    counted, unnamed = counted_parts(drivetrain, machine, options.lives, options.rollers)
+    counted, unnamed = counted_parts(drivetrain, machine, options.lives, options.rollers, strict)
     return PartQuestion(drivetrain, options, counted, unnamed)
 
 
@@ -254,11 +279,15 @@ def part_figures(found: Findings, use: PartUse | None) -> list[KeyFigure]:
         name = max(damages, key=lambda each: damages[each])
         of = use.gears.get(name)
         band = use.bearings[name].band if of is None else of.band
+        limit: KeyLimit = {}
+        if damages[name] > 1.0:  # a life ends within it; below that no design life is known
+            limit = {"at_most": 1.0, "by": "the end of a life"}
         figures.append(
             found.value(
                 f"damage of {name}, each {use.per}",
                 damages[name],
                 band if np.isfinite(band) else None,
+                **limit,
             )
         )
     if use.bearings:

@@ -51,7 +51,7 @@ class TransientResult(Result):
     files : Mapping[str, FileDigest]
         What it did over each history, by its name; empty of an event.
     by_instant : ByInstant or None
-        Peak of the last shaft's torque by the instant of the brake of a stop.
+        Peak of the torque that tells what a stop does, by the instant of its brake.
     parts : PartUse or None
         What it does to gears and bearings, of an event once, of operation in a year; None where
         that was not asked for.

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.dynamics.time.machine_channels import of_planet
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.transient_digest import FileDigest, equivalent_range
@@ -206,6 +207,8 @@ def instant_rows(found: ByInstant) -> list[Record]:
 def alternating_rows(run: LevelRun) -> list[Record]:
     """Forces of bearings and meshes under an offset: steady, once and twice a turn.
 
+    Its band is how far both halves of that time differ: what swings otherwise is in neither.
+
     Of planets that travel there are none: weights swing them once a turn of their carrier, whose
     mean over so short a time is not that of a turn.
 
@@ -224,16 +227,21 @@ def alternating_rows(run: LevelRun) -> list[Record]:
         if one.kind not in ("bearing", "mesh") or (run.planets_travel and of_planet(name)):
             continue
         values = run.samples.of(name)[late]
-        found = np.linalg.lstsq(waves, values, rcond=None)[0]
-        once, twice = np.hypot(*found[1:3]), np.hypot(*found[3:5])
+        mean, once, twice = _waves_in(waves, values)
+        halves = [
+            _waves_in(waves[half], values[half])
+            for half in np.array_split(np.arange(len(values)), 2)
+        ]
+        apart = max(abs(a - b) for a, b in zip(*halves, strict=True))
         rows.append(
             {
                 "force": name,
                 "aligned [kN]": one.rated / 1e3,
-                "mean [kN]": float(found[0]) / 1e3,
-                "change of the mean [kN]": (float(found[0]) - one.rated) / 1e3,
-                "once a turn [kN]": float(once) / 1e3,
-                "twice a turn [kN]": float(twice) / 1e3,
+                "mean [kN]": mean / 1e3,
+                "change of the mean [kN]": (mean - one.rated) / 1e3,
+                "once a turn [kN]": once / 1e3,
+                "twice a turn [kN]": twice / 1e3,
+                "± of these [kN]": apart / 1e3,
                 "largest [kN]": float(values.max()) / 1e3,
             }
         )
@@ -244,3 +252,9 @@ def alternating_rows(run: LevelRun) -> list[Record]:
 
     largest = max(map(moved, rows), default=0.0)
     return [row for row in rows if moved(row) >= SMALL * largest]
+
+
+def _waves_in(waves: Floats, values: Floats) -> tuple[float, float, float]:
+    """Mean of values (n,), and amplitudes once and twice a turn by their waves (n, 5)."""
+    found = np.linalg.lstsq(waves, values, rcond=None)[0]
+    return float(found[0]), float(np.hypot(*found[1:3])), float(np.hypot(*found[3:5]))

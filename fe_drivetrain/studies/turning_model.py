@@ -127,7 +127,7 @@ class TurningModel:
         if self.rung.level not in EVENTS[event].levels:
             return None
         if event not in self._parts:
-            question = part_question(self.drivetrain, self.machine, DAMAGE)
+            question = part_question(self.drivetrain, self.machine, DAMAGE, strict=False)
             run = event_at(self.drivetrain, event, self.rung, question.counted)
             self._parts[event] = question.of_event(run, rated_of(self.drivetrain).torque)
         return self._parts[event]
@@ -138,7 +138,7 @@ class TurningModel:
         if self.rung.level is Level.TORSIONAL:
             return {}
         rated, machine, options = rated_of(self.drivetrain), self.machine, DAMAGE.lives
-        counted, _ = counted_parts(self.drivetrain, machine, options, True)
+        counted, _ = counted_parts(self.drivetrain, machine, options, True, strict=False)
         names = [one.name for one in counted.bearings]
         model = BearingModel(machine, self.rung.level, flexible=self.rung.flexible)
         reactions = model.reactions(of=names)

@@ -445,3 +445,26 @@ def test_the_default_by_name_is_the_default() -> None:
     assert not own.own
     assert chosen_drivetrain("nrel_5mw", "nrel_750kw").own
     assert chosen_drivetrain(None, "nrel_750kw") == own
+
+
+def test_a_case_about_gears_refuses_a_direct_drive() -> None:
+    name = "iea_15mw_main_shaft"
+    assert chosen_drivetrain(name, "").own
+    with pytest.raises(InputError, match=f"drivetrain '{name}' has no gears: give gearbox.stages"):
+        chosen_drivetrain(name, "", gears=True)
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        "dynamics/campbell_table",
+        "dynamics/contact_stresses",
+        "dynamics/park_time",
+        "gear/nrel_5mw",
+        "procedure/run_up",
+    ],
+)
+def test_cases_about_gears_ask_for_them(case: str, tmp_path: Path) -> None:
+    """Each of these ended in a traceback."""
+    with pytest.raises(InputError, match="has no gears"):
+        ran(all_cases()[case].run, tmp_path, drivetrain="iea_15mw_main_shaft")

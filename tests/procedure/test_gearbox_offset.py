@@ -131,6 +131,17 @@ def test_the_study_shows_what_it_does_to_bearings_and_meshes() -> None:
     assert not any("coupling" in one.name for one in found.assumptions)
 
 
+def test_an_offset_that_a_determinate_gearbox_follows_changes_nothing_and_says_so() -> None:
+    """On one main bearing and a mount that tilts freely: the verdict is no round-off."""
+    grc, values = read_drivetrain("grc_750kw"), {"gearbox_uz": 1e-3}
+    asked = {"level": "rigid", "duration": 0.4, "step": 2e-3, "damage": None}
+    found = transient(grc, "offset", values, **asked)  # type: ignore[arg-type]
+    assert found.answer.verdict == (
+        "The offset changes no mean force of a bearing or mesh, and nothing alternates."
+    )
+    assert not any("change of its mean" in one.name for one in found.answer.figures)
+
+
 def test_what_cannot_be_is_refused() -> None:
     with pytest.raises(InputError, match=r"gearbox_uy of the event is 1 m but must be from -0.05"):
         event_of("offset", {"gearbox_uy": 1.0})

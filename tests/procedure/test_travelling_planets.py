@@ -58,13 +58,23 @@ def test_the_study_states_which_planets_it_has() -> None:
     assert "planets" not in said["stand"][1]
 
 
+def test_a_drivetrain_without_planets_has_no_word_of_them() -> None:
+    found = transient(
+        read_drivetrain("iea_15mw_main_shaft"), "dip", level="rigid", duration=1.2, step=1e-2
+    )
+    said = (*found.answer.cautions, *found.notes)
+    assert not any("planet" in one.lower() for one in said)
+
+
 def test_planets_travel_at_about_a_steady_speed_only() -> None:
-    assert travels("base", "travel")
-    assert not travels("stop", "stand")
+    geared = machine_of(read_drivetrain(NAME))
+    direct = machine_of(read_drivetrain("iea_15mw_main_shaft"))
+    assert travels("base", "travel", geared, Level.RIGID)
+    assert not travels("stop", "stand", direct)
     with pytest.raises(InputError, match="but the speed changes in stop: let `planets` stand"):
-        travels("stop", "travel")
+        travels("stop", "travel", geared)
     with pytest.raises(InputError, match="planets"):
-        travels("dip", "fly")
+        travels("dip", "fly", geared)
     with pytest.raises(InputError, match="beside its steady azimuth but planets travel up to"):
         transient(
             read_drivetrain(NAME),
@@ -75,3 +85,6 @@ def test_planets_travel_at_about_a_steady_speed_only() -> None:
             duration=9.0,
             step=0.02,
         )
+    for machine, level in ((direct, None), (geared, Level.TORSIONAL)):
+        with pytest.raises(InputError, match="has no planets that could travel"):
+            travels("dip", "travel", machine, level)

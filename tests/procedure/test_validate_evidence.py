@@ -418,13 +418,16 @@ def test_commands_repeat_what_was_typed_or_follow_from_the_name(
     typed = f"fe-drivetrain life {MACHINE} --loads a.outb --catalogue b.yaml"
     more = {"command": f"{typed} --quick", "quick": True}
     write_case(tmp_path / "reports", "life/mine", drivetrains=[OTHER], **more)
-    names = ("life/mine", "transient/mine-grid-loss", "transient/mine-operation", "gears/mine")
+    in_time = ("transient/mine-grid-loss", "transient/mine-offset", "transient/mine-operation")
+    names = ("life/mine", *in_time, "gears/mine")
     small["model"]["evidence"] = [{"case": name} for name in (*names, "transient/mine")]
     standing = validate_project(Project.model_validate(small), tmp_path)
     out = f"--out {tmp_path}/reports"
     assert ready_commands(standing, tmp_path / "p.yaml")[:-1] == [
         typed,
         f"fe-drivetrain transient {MACHINE} grid-loss {out}/transient/mine-grid-loss",
+        f"fe-drivetrain transient {MACHINE} offset --value coupling=1000000 --value y=0.001 "
+        f"{out}/transient/mine-offset",
         f"fe-drivetrain transient {MACHINE} operation --loads 'outputs/*.outb' --csv "
         f"{out}/transient/mine-operation",
         f"fe-drivetrain gears {MACHINE} {out}/gears/mine",

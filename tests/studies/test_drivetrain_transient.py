@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -34,11 +35,18 @@ from fe_drivetrain.procedure.failure_modes import (
 )
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.shafts.fidelity.quantity import ERROR_AGAINST_LAST, LEVEL_ERRORS, OWN_ERROR
-from fe_drivetrain.studies import TransientResult, transient, transient_digest
+from fe_drivetrain.studies import (
+    TransientResult,
+    drivetrain_transient,
+    transient,
+    transient_digest,
+)
 from fe_drivetrain.studies.transient_digest import OperationOptions, equivalent_range
 from fe_drivetrain.studies.transient_ladder import cheapest_level, level_error
 from fe_drivetrain.studies.transient_loads import design_loads
+from fe_drivetrain.studies.transient_parts import DamageOptions
 from fe_drivetrain.studies.transient_runs import Extreme, Samples, telling_torque
+from fe_drivetrain.turbine_loads.histories.sites import Site
 
 CATALOGUE = protest_catalogue()
 PARK = {"operation.rated_power": 1.5e6, "operation.rotor_speed": [1.0, 1.8]}
@@ -216,6 +224,31 @@ def test_a_run_that_is_resumed_reads_what_is_done_no_more(
 def test_what_cannot_be_asked_is_refused(event: str, more: dict[str, object], said: str) -> None:
     with pytest.raises(InputError, match=said):
         transient(two_masses(), event, **more)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"duration": -5.0}, "`duration` is -5 s but must be above 0 s: change it"),
+        ({"duration": 0.0}, "`duration` is 0 s but must be above 0 s"),
+        ({"step": 0.0}, "`step` is 0 s but must be from 1e-07 to 1 s"),
+        ({"options": OperationOptions(until=-1.0)}, "`duration` is -1 s"),
+        ({"damage": DamageOptions(site=Site(8.5))}, "there is no wind speed"),
+    ],
+)
+def test_operation_refuses_what_it_cannot_count_before_it_runs(
+    tmp_path: Path, more: dict[str, Any], said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Zero is no word for the whole history, and one file no climate, before an hour of work."""
+    path = tmp_path / "a.csv"
+    write_torque(path, 1e5)
+
+    def refuse(*_: object) -> None:
+        raise AssertionError("a history was driven")
+
+    monkeypatch.setattr(drivetrain_transient, "operation", refuse)
+    with pytest.raises(InputError, match=said):
+        transient(two_masses(), "operation", loads=path, **more)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Gears and bearings in time: damage by hand, by ratings and lives of the same loads, limits."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from fe_drivetrain.dynamics.bodies.machine import machine_of
 from fe_drivetrain.gear.load_factors import LoadFactors
 from fe_drivetrain.gear.rating import contact_stress
 from fe_drivetrain.report.results import read_results
+from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies import (
     DamageOptions,
     GearOptions,
@@ -40,9 +42,10 @@ from fe_drivetrain.studies.gear_meshes import gear_meshes
 from fe_drivetrain.studies.gear_spectra import TorqueSpectrum
 from fe_drivetrain.studies.gear_stresses import MeshStresses
 from fe_drivetrain.studies.part_bearings import counted_parts
-from fe_drivetrain.studies.part_damage import times_a_year
+from fe_drivetrain.studies.part_damage import PartUse, times_a_year
 from fe_drivetrain.studies.part_gears import GearUses
 from fe_drivetrain.studies.part_loads import PartDigest
+from fe_drivetrain.studies.transient_parts import part_figures
 from fe_drivetrain.studies.turning_model import TurningModel
 from fe_drivetrain.studies.turning_quantities import turning_quantities
 from fe_drivetrain.turbine_loads.histories.sites import Site
@@ -257,6 +260,32 @@ def test_operation_is_damage_of_a_year(tmp_path: Path) -> None:
     assert [row["file"] for row in found.tables["file_damage"]] == ["a", "b"]
 
 
+@pytest.mark.parametrize(("damage", "status"), [(0.3, "none"), (3.0, "bad"), (np.inf, "bad")])
+def test_a_life_that_ends_within_a_year_or_an_event_is_beyond(
+    carried: TransientResult, damage: float, status: str
+) -> None:
+    """A page whose bearing lasts four months is not within all limits."""
+    assert carried.parts is not None
+    worn = replace(carried.parts.bearings["PLC-B"], damage={"L10": damage})
+    use = PartUse("year", 1.0, bearings={"PLC-B": worn})
+    (figure, _) = part_figures(Findings(), use)
+    assert figure.name == "damage of PLC-B, each year"
+    assert figure.status == status
+
+
+def test_a_catalogue_of_ones_own_leaves_the_quantities_of_all_else() -> None:
+    """Nobody can give `advise` one: a bearing of it has no damage there, gears still do."""
+    own = read_drivetrain("nrel_5mw", {**SOFT, "gearbox.bearings.1.catalogue": "my_own"})
+    assert isinstance(own, Scene)
+    name = own.gearbox.bearings[1].name
+    lost = set(turning_quantities(WHOLE)) - set(turning_quantities(own))
+    assert lost
+    assert all(f".{name}." in one for one in lost)
+    with pytest.raises(InputError, match="my_own"):
+        counted_parts(own, machine_of(own), LifeOptions(), False)
+    assert name in counted_parts(own, machine_of(own), LifeOptions(), False, strict=False)[1]
+
+
 def test_quantities_are_those_of_events_and_lives(
     carried: TransientResult, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -320,6 +349,22 @@ def test_peaks_are_held_against_limits_of_the_file() -> None:
         (row,) = [r for r in found.tables["extremes"] if r["channel"] == "torque of shaft"]
         assert_allclose(row["peak over its limit"] * share * TORQUE / 1e3, figure.value)
         assert any("Beyond limits of the file" in note for note in found.notes) == bool(words)
+
+
+def test_a_limit_that_another_instant_of_the_brake_passes_is_in_the_verdict() -> None:
+    """The peak itself is within it; the figure of all instants is not."""
+    asked: dict[str, Any] = {"level": "torsional", "duration": 2.0, "damage": None}
+    values = {"off": 0.1, "braked": 0.5, "pitched": 0.2, "brake": 2.0}
+    free = transient(two_masses(), "stop", values, **asked)
+    assert free.by_instant is not None
+    own, most = free.extremes["torque of shaft"].largest, max(free.by_instant.peaks) * TORQUE
+    assert most > 1.01 * own
+    limits = {"peak_torque": {"shaft": 0.5 * (own + most)}}
+    found = transient(two_masses(limits=limits), "stop", values, **asked)
+    assert found.answer.verdict.endswith(", braked at another instant beyond its limit.")
+    statuses = {one.name: one.status for one in found.answer.figures}
+    assert statuses["peak torque of shaft"] == "good"
+    assert "bad" in statuses.values()
 
 
 def test_the_page_shows_damage_and_safety(tmp_path: Path) -> None:

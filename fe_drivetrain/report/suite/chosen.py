@@ -88,7 +88,9 @@ class ChosenDrivetrain:
         return InputError(f"drivetrain {of!r} does not state {key}: add it, as in {key}: {example}")
 
 
-def chosen_drivetrain(given: object, default: str | Drivetrain) -> ChosenDrivetrain:
+def chosen_drivetrain(
+    given: object, default: str | Drivetrain, gears: bool = False
+) -> ChosenDrivetrain:
     """The drivetrain that a setting names, or the case's own.
 
     Parameters
@@ -97,11 +99,13 @@ def chosen_drivetrain(given: object, default: str | Drivetrain) -> ChosenDrivetr
         Value of the setting; None where the user gives none.
     default : str or Drivetrain
         The case's own, by its name in the library or as read.
+    gears : bool
+        Whether the case is about gears.
 
     Raises
     ------
     InputError
-        There is no such drivetrain, or it is wrong.
+        There is no such drivetrain, it is wrong, or it has no gears where the case is about these.
     """
     from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 
@@ -111,7 +115,10 @@ def chosen_drivetrain(given: object, default: str | Drivetrain) -> ChosenDrivetr
             f"{SETTING}=mine.yaml"
         )
     if given is not None and given != default:
-        return ChosenDrivetrain(str(given), read_drivetrain(str(given)), own=True)
+        found = ChosenDrivetrain(str(given), read_drivetrain(str(given)), own=True)
+        if gears and not found.drivetrain.gearbox.stages:
+            raise InputError(f"drivetrain {found.name!r} has no gears: give gearbox.stages")
+        return found
     if isinstance(default, str):
         return ChosenDrivetrain(default, read_drivetrain(default), own=False)
     return ChosenDrivetrain("", default, own=False)

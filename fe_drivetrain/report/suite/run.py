@@ -142,22 +142,24 @@ class Run(Clock):
             raise InputError(f"{key} = {value!r} must be a number above 0, as in {key}={example:g}")
         return float(value)
 
-    def drivetrain(self, default: str | Drivetrain) -> ChosenDrivetrain:
+    def drivetrain(self, default: str | Drivetrain, gears: bool = False) -> ChosenDrivetrain:
         """The drivetrain that the user names by ``--set drivetrain=FILE``, or the case's own.
 
         Parameters
         ----------
         default : str or Drivetrain
             The case's own, by its name in the library or as read.
+        gears : bool
+            Whether the case is about gears, so that a direct drive is refused.
 
         Raises
         ------
         InputError
-            There is no such drivetrain, or it is wrong.
+            There is no such drivetrain, it is wrong, or it has no gears.
         """
         from fe_drivetrain.report.suite.chosen import SETTING, chosen_drivetrain
 
-        return chosen_drivetrain(self.settings.get(SETTING), default)
+        return chosen_drivetrain(self.settings.get(SETTING), default, gears)
 
     def sketch(self, *bodies: Body | Shaft | list[Faces], file: str = "model.png") -> str:
         """Write a small picture of bodies, as meshed, shafts or surfaces; its name for a page."""
