@@ -660,7 +660,7 @@ def test_the_commands_of_the_docs_work_word_for_word(
     ]
     assert [words[0] for words in commands] == [
         *("new", "check", "study", "advise", "loads", "compare"),
-        *2 * ["export"],
+        *3 * ["export"],
     ]
     for words in commands:
         coarse = [] if words[0] in ("new", "loads") else [*QUICK, *SHORT]
