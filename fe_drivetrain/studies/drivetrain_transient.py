@@ -15,20 +15,18 @@ from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.dynamics.bodies.advice import RUNGS, Rung
 from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs, plain_rungs, rungs_of
-from fe_drivetrain.dynamics.bodies.damping_ratios import ASSUMED_RATIOS, first_mode_damping
+from fe_drivetrain.dynamics.bodies.damping_ratios import first_mode_damping
 from fe_drivetrain.dynamics.bodies.equations import equations_of_motion, spring_laws, steady
 from fe_drivetrain.dynamics.bodies.levels import Level
-from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of, rated_torque
+from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
 from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.machine_channels import Kind
-from fe_drivetrain.procedure.drivetrain_events import EVENTS, SLIP, Event, event_of
+from fe_drivetrain.procedure.drivetrain_events import EVENTS, Event, event_of
 from fe_drivetrain.procedure.drivetrain_operation import operation
 from fe_drivetrain.procedure.travelling_planets import (
     STAND,
     TRAVEL,
-    has_planets,
     travels,
-    with_travelling_planets,
 )
 from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite.findings import Findings
@@ -36,19 +34,22 @@ from fe_drivetrain.studies.gearbox_bearings import main_names
 from fe_drivetrain.studies.machine_description import housings_in_words
 from fe_drivetrain.studies.mode_levels import WORDS, named_rung
 from fe_drivetrain.studies.part_damage import PartUse
-from fe_drivetrain.studies.part_loads import NO_PARTS, CountedParts
 from fe_drivetrain.studies.stated_levels import Errors, state_level_errors
 from fe_drivetrain.studies.torque_limits import note_limits, torque_limits
+from fe_drivetrain.studies.transient_answers import Beside, state_answer
 from fe_drivetrain.studies.transient_digest import (
     FileDigest,
     OperationOptions,
     digests,
     driven,
 )
+from fe_drivetrain.studies.transient_events import (
+    prepared_event,
+    rated_of,
+    values_of_file,
+)
 from fe_drivetrain.studies.transient_findings import (
-    Beside,
     judge_run,
-    state_answer,
     state_assumptions,
     state_bounds,
     state_figures,
@@ -189,14 +190,15 @@ def transient(
     steps, machine = Steps(report), machine_of(drivetrain)
     rated = rated_of(drivetrain, backlash)
     named = None if level is None else WORDS.get(level)
-    rungs = Rungs(plain_rungs(drivetrain, machine), {})
     if condensed:
         rungs = rungs_of(drivetrain, steps=steps)
+    else:
+        rungs = Rungs(plain_rungs(drivetrain, machine), {})
     asked = _Asked(
         drivetrain,
         machine,
         event,
-        {**_of_file(drivetrain, event), **(values or {})},
+        {**values_of_file(drivetrain, event), **(values or {})},
         rated,
         rungs,
         level,
@@ -271,51 +273,6 @@ class _Asked:
         }
 
 
-def rated_of(drivetrain: Drivetrain, backlash: float = 0.0) -> Rated:
-    """What a drivetrain runs at, from its file.
-
-    Parameters
-    ----------
-    drivetrain : Drivetrain
-        With `operation`, or the rated torque of its generator and a speed of the rotor.
-    backlash : float
-        Backlash of all meshes along their lines of action [m].
-
-    Raises
-    ------
-    InputError
-        A value is missing; the message names its key.
-    """
-    of, generator = drivetrain.operation, drivetrain.generator
-    if of is None or of.rotor_speed is None:
-        raise InputError(
-            f"{drivetrain.title!r} does not state the speed of its rotor: add operation: "
-            "{rotor_speed: [least, rated]} in rad/s"
-        )
-    rated = rated_torque(drivetrain, machine_of(drivetrain))
-    if rated is None:
-        raise InputError(
-            f"{drivetrain.title!r} does not state its rated power: add operation: "
-            "{rated_power: ...} in W"
-        )
-    slip = None if generator is None else generator.slip
-    return Rated(
-        rated.torque,
-        of.rotor_speed[1],
-        SLIP if slip is None else slip,
-        drivetrain.damping or ASSUMED_RATIOS,
-        backlash,
-    )
-
-
-def _of_file(drivetrain: Drivetrain, event: str) -> dict[str, float | str]:
-    """Values of an event that the drivetrain's file states: its brake."""
-    brake = drivetrain.brake
-    if event != "stop" or brake is None:
-        return {}
-    return {"shaft": brake.shaft, "brake_torque": brake.torque, "rise": brake.rise}
-
-
 def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     """An event, at all levels that were asked for."""
     event = event_of(asked.event, asked.values)
@@ -325,7 +282,7 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
 
     def at(rung: Rung) -> Callable[[float | None], LevelRun]:
         counted, travels = asked.parts.counted, asked.travels
-        found = _at_rung(asked.machine, asked.rated, event, duration, rung, counted, travels)
+        found = prepared_event(asked.machine, asked.rated, event, duration, rung, counted, travels)
         made[rung.name], run = found
         return run
 
@@ -341,51 +298,6 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     return _result(
         asked, found, steps, runs, number, run.extremes, run.samples, {}, {}, instants, use
     )
-
-
-def _at_rung(
-    machine: Machine,
-    rated: Rated,
-    event: Event,
-    duration: float,
-    rung: Rung,
-    counted: CountedParts,
-    planets_travel: bool = False,
-) -> tuple[Prepared, Callable[[float | None], LevelRun]]:
-    """A drivetrain at a level, and its event there with a step; that which it needs for None."""
-    of = Prepared(machine, rung, rated, event.teeth, parts=counted)
-    planned = event.plan(of.of, duration, rated.slip)
-    if planets_travel and has_planets(machine, rung.level):
-        planned = with_travelling_planets(of.of, planned)
-    return of, lambda step: of.event(planned, event.step(of.of) if step is None else step)
-
-
-def event_at(
-    drivetrain: Drivetrain, event: str, rung: Rung, counted: CountedParts = NO_PARTS
-) -> LevelRun:
-    """An event of a drivetrain at one level, with all defaults, and the bands of its step.
-
-    Parameters
-    ----------
-    drivetrain : Drivetrain
-        The drivetrain.
-    event : str
-        Name of an event, not of operation.
-    rung : Rung
-        The level, at which the event can happen.
-    counted : CountedParts
-        Bearings whose damage is counted.
-
-    Raises
-    ------
-    InputError
-        See `transient`.
-    """
-    machine, rated = machine_of(drivetrain), rated_of(drivetrain)
-    happens = event_of(event, _of_file(drivetrain, event))
-    duration = happens.lasts(rated.running(machine, RUNGS[0]))
-    _, run = _at_rung(machine, rated, happens, duration, rung, counted)
-    return with_bands(run(None), run)
 
 
 def _duration(asked: _Asked, event: Event) -> float:
@@ -459,9 +371,13 @@ def _operated(
     asked.parts.require_winds(files, first.wind)
     window = min(WINDOW if options.until is None else options.until, WINDOW, first.seconds)
 
+    counted = asked.parts.counted
+    made: dict[str, Prepared] = {}
+
     def at(rung: Rung) -> Callable[[float | None], LevelRun]:
-        counted = asked.parts.counted
-        of = Prepared(asked.machine, rung, asked.rated, hub_loads=first.has_all, parts=counted)
+        of = made[rung.name] = Prepared(
+            asked.machine, rung, asked.rated, hub_loads=first.has_all, parts=counted
+        )
         moving = operation(of.of, first, asked.rated.slip)
         return lambda step: of.window(moving, options.step if step is None else step, window)
 
@@ -470,9 +386,7 @@ def _operated(
     rung = runs[number].rung
     names = [short_name(path, files) for path in files]
     with steps.step("files"):
-        counted = asked.parts.counted
-        of = Prepared(asked.machine, rung, asked.rated, hub_loads=first.has_all, parts=counted)
-        begun, samples = driven(of, first, options)
+        begun, samples = driven(made[rung.name], first, options)
         rest = digests(
             files[1:],
             asked.machine,
@@ -530,7 +444,8 @@ def _result(
     kinds = [kind for kind in QUANTITIES if any(e.kind == kind for e in extremes.values())]
     errors = tuple(tuple(level_error(one, runs[-1], kind) for kind in kinds) for one in runs)
     imbalance = max([run.imbalance, *(one.imbalance for one in files.values())])
-    found.data("extremes", extreme_rows(extremes, torque_limits(asked.drivetrain, extremes)))
+    limits = torque_limits(asked.drivetrain, extremes)
+    found.data("extremes", extreme_rows(extremes, limits))
     found.data("levels", level_rows(runs, errors, number))
     of_kinds = {
         QUANTITIES[kind]: Errors([of[k].error for of in errors], finest_band(runs, kind))
@@ -552,7 +467,6 @@ def _result(
             f"Swings hardly decay: the first mode's damping ratio is {percent_text(damping)} by "
             "the ratios of each shaft and mesh between its own two bodies."
         )
-    limits = torque_limits(asked.drivetrain, extremes)
     note_limits(found, limits, extremes)
     beside = Beside(instants, use, limits)
     state_answer(found, asked.event, extremes, run, runs, number, files, asked.quantity, beside)

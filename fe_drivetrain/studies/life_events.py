@@ -18,10 +18,11 @@ from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
-from fe_drivetrain.studies.drivetrain_transient import rated_of, transient
+from fe_drivetrain.studies.drivetrain_transient import transient
 from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.life_sums import BearingLife
 from fe_drivetrain.studies.part_damage import PartUse
+from fe_drivetrain.studies.transient_events import rated_of
 from fe_drivetrain.studies.transient_parts import DamageOptions
 from fe_drivetrain.turbine_loads.histories.sites import Site
 

@@ -12,13 +12,13 @@ from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.procedure.drivetrain_events import EVENTS
-from fe_drivetrain.studies.drivetrain_transient import rated_of
 from fe_drivetrain.studies.gear_machine import gear_train
 from fe_drivetrain.studies.gear_meshes import gear_meshes
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.part_bearings import counted_parts
 from fe_drivetrain.studies.part_damage import BearingUse
 from fe_drivetrain.studies.part_gears import FlankUse
+from fe_drivetrain.studies.transient_events import rated_of
 from fe_drivetrain.studies.transient_parts import DAMAGE
 from fe_drivetrain.studies.turning_model import TurningModel, TurningQuantity
 

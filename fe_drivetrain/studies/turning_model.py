@@ -25,7 +25,6 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.dynamics.bodies.bearing_reactions import BearingModel
 from fe_drivetrain.procedure.drivetrain_events import EVENTS
-from fe_drivetrain.studies.drivetrain_transient import event_at, rated_of
 from fe_drivetrain.studies.gear_answers import GearAnswer, MeshAnswer
 from fe_drivetrain.studies.gear_loads import GearLoading, loads_of
 from fe_drivetrain.studies.gear_options import GearOptions
@@ -36,6 +35,7 @@ from fe_drivetrain.studies.part_damage import PartUse
 from fe_drivetrain.studies.part_loads import RPM
 from fe_drivetrain.studies.rated_gears import GearRating
 from fe_drivetrain.studies.tooth_damage import gear_damage
+from fe_drivetrain.studies.transient_events import event_at, rated_of
 from fe_drivetrain.studies.transient_parts import DAMAGE, part_question
 from fe_drivetrain.studies.transient_runs import Extreme
 

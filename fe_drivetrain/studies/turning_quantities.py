@@ -31,12 +31,12 @@ from fe_drivetrain.dynamics.bodies.mesh_loads import mesh_springs
 from fe_drivetrain.dynamics.time.machine_channels import UNITS, machine_channels
 from fe_drivetrain.dynamics.torsion.system import natural_modes
 from fe_drivetrain.procedure.drivetrain_events import EVENTS
-from fe_drivetrain.studies.drivetrain_transient import rated_of
 from fe_drivetrain.studies.gear_loads import GearLoading
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_ratings import prepared
 from fe_drivetrain.studies.mode_levels import BANDED, element_bands
 from fe_drivetrain.studies.part_quantities import part_quantities
+from fe_drivetrain.studies.transient_events import rated_of
 from fe_drivetrain.studies.turning_model import TurningModel, TurningQuantity
 
 FIRST = "modes.torsional.1"

@@ -10,7 +10,8 @@ from fe_drivetrain.dynamics import Level, azimuths, machine_of, machine_system, 
 from fe_drivetrain.dynamics.bodies.advice import RUNGS
 from fe_drivetrain.procedure.drivetrain_events import event_of
 from fe_drivetrain.procedure.travelling_planets import travels, with_travelling_planets
-from fe_drivetrain.studies.drivetrain_transient import rated_of, transient
+from fe_drivetrain.studies.drivetrain_transient import transient
+from fe_drivetrain.studies.transient_events import rated_of
 from fe_drivetrain.studies.transient_runs import Prepared
 
 NAME, PIN, COUNT = "nrel_750kw", "stage 1 pin 1 upwind", 12

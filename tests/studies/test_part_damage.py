@@ -36,7 +36,6 @@ from fe_drivetrain.studies import (
     loads,
     transient,
 )
-from fe_drivetrain.studies.drivetrain_transient import rated_of
 from fe_drivetrain.studies.gear_machine import gear_train
 from fe_drivetrain.studies.gear_meshes import gear_meshes
 from fe_drivetrain.studies.gear_spectra import TorqueSpectrum
@@ -45,6 +44,7 @@ from fe_drivetrain.studies.part_bearings import counted_parts
 from fe_drivetrain.studies.part_damage import PartUse, times_a_year
 from fe_drivetrain.studies.part_gears import GearUses
 from fe_drivetrain.studies.part_loads import PartDigest
+from fe_drivetrain.studies.transient_events import rated_of
 from fe_drivetrain.studies.transient_parts import part_figures
 from fe_drivetrain.studies.turning_model import TurningModel
 from fe_drivetrain.studies.turning_quantities import turning_quantities
