@@ -7,7 +7,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.drivetrain.own_damping import own_damping, residual
+from fe_drivetrain.cases.drivetrain.own_damping import checked_rows, own_damping
 from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.cases.references.implied_shafts import DAMPING_RATIO, SHEAR_MODULUS, implied
 from fe_drivetrain.common import Floats
@@ -20,8 +20,6 @@ from fe_drivetrain.dynamics.torsion import (
     damped_modes,
     gear_masses,
     mesh_damping,
-    modal_damping,
-    natural_modes,
     response,
     shaft_damping,
     stage_masses,
@@ -266,31 +264,9 @@ def check_eigenvalues(page: Page, models: Models) -> list[Record]:
     rows = []
     for state, systems in models.items():
         for name, system in systems.items():
-            found = damped_modes(system)
             with nullcontext() if name.endswith("as tabled") else page.of(None):
-                page.vanishes(
-                    f"{name}, generator {state}: largest residual of lambda^2 M + lambda C + K",
-                    max(residual(system, value) for value in found.eigenvalues),
-                    within=1e-9,
-                    why="an eigenvalue makes it singular; ten digits of each are asked for",
-                    source="least over largest singular value, each row and column over sqrt J, "
-                    "times the stiffest over the mode's own",
-                )
-            undamped = natural_modes(system).frequencies
-            first = modal_damping(system)
-            moving = np.flatnonzero(undamped > 0)
-            rows += [
-                {
-                    "model": name,
-                    "generator": state,
-                    "undamped [Hz]": float(undamped[m]),
-                    "damped [Hz]": float(f),
-                    "damping ratio": float(value),
-                    "to first order": float(first[m]),
-                }
-                for m, value, f in zip(moving, found.ratios, found.frequencies, strict=True)
-                if state == "fixed" or undamped[m] <= LOW
-            ]
+                own = checked_rows(page, name, state, system, strict=True)
+            rows += [row for row in own if state == "fixed" or row["undamped [Hz]"] <= LOW]
     return rows
 
 

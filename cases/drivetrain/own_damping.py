@@ -92,8 +92,13 @@ def has_dampers(system: Torsional) -> bool:
     return any(element.damping > 0.0 for element in system.elements)
 
 
-def checked_rows(page: Page, name: str, state: GeneratorState, system: Torsional) -> list[Record]:
-    """Damping ratios of one model, its eigenvalues checked."""
+def checked_rows(
+    page: Page, name: str, state: GeneratorState, system: Torsional, strict: bool = False
+) -> list[Record]:
+    """Damping ratios of one model, its eigenvalues checked; strictly one for each mode, or fewer.
+
+    A mode that is damped beyond critical has no ratio.
+    """
     found = damped_modes(system)
     page.vanishes(
         f"{name}, generator {state}: largest residual of lambda^2 M + lambda C + K",
@@ -114,7 +119,7 @@ def checked_rows(page: Page, name: str, state: GeneratorState, system: Torsional
             "damping ratio": float(value),
             "to first order": float(first[m]),
         }
-        for m, value, f in zip(moving, found.ratios, found.frequencies, strict=False)
+        for m, value, f in zip(moving, found.ratios, found.frequencies, strict=strict)
     ]
 
 
