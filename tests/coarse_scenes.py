@@ -24,9 +24,9 @@ FINER = {
 }
 
 MOUNT = (4.0e6, 8.0e7, 8.0e7, 8.0e7, 0.0, 4.0e6)
-"""Of the gearbox of `coarse_drivetrain` [N/m, N m/rad]."""
+"""Mount of the gearbox of `coarse_drivetrain` [N/m, N m/rad]."""
 LENGTHS = (0.5, 0.9, 0.8)
-"""Of the steps of its main shaft [m]."""
+"""Lengths of the steps of its main shaft [m]."""
 
 
 def coarse_scene(kind: str, **changes: object) -> Scene:

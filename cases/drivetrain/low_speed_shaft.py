@@ -57,7 +57,7 @@ class Solid(NamedTuple):
     Attributes
     ----------
     unknowns, stiffness : list[int], list[float]
-        Of each mesh, ends rigid [N m/rad].
+        Unknowns of each mesh, and its stiffness with rigid ends [N m/rad].
     averaged : float
         On the first mesh, the front face free to deform [N m/rad].
     series : GridConvergence
@@ -81,7 +81,7 @@ def stepped(length: float, stiffness: float, fillet: float = FILLET) -> Shaft:
     Parameters
     ----------
     length : float
-        Of all three [m].
+        Length of all three [m].
     stiffness : float
         1 / sum(L / G J) [N m/rad].
     fillet : float
@@ -123,9 +123,9 @@ def meridian_stiffness(
     shaft : Shaft
         The shaft.
     size : float
-        Of elements in the meridian [m].
+        Size of elements in the meridian [m].
     order : int, optional
-        Of these elements; `end_stiffness` chooses where it is left out.
+        Order of these elements; `end_stiffness` chooses where it is left out.
     material : Material
         Its material; steel of G = 80 GPa where left out.
 

@@ -19,7 +19,7 @@ from fe_drivetrain.report import bars
 from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
-ALIKE = 0.01
+NEARLY_EQUAL = 0.01
 """How near to each other two ways to the stiffness have to be."""
 
 HERO = "Torsional stiffness of the main shaft by each way"
@@ -50,7 +50,7 @@ def own_main_shaft(run: Run, page: Page) -> None:
         f"main shaft in three dimensions, {solid.unknowns[-1]:,} unknowns [N m/rad]",
         solid.series.finest,
         meridian.value,
-        within=ALIKE,
+        within=NEARLY_EQUAL,
         why="a hundredth of a stiffness is less than half a hundredth of a frequency",
         source=f"meridian, order {lss.ORDERS[-1]}, rigid ends",
         band=solid.series.uncertainty,

@@ -21,7 +21,7 @@ from fe_drivetrain.report.suite import ChosenDrivetrain, Page, Record, Run
 
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0)
 THINNEST, THICKEST = 0.03, 0.27
-"""Of the rims, over the pitch radius of the ring."""
+"""Thickness of the rims, over the pitch radius of the ring."""
 COUNT = 30
 """Frequencies above zero that are compared, from the lowest on."""
 CHANGES = "Largest change of a frequency by the thickness of the rim, against a rigid ring"

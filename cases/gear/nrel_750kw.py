@@ -32,7 +32,7 @@ def answer(
     page: Page, stiffness: dict[str, float], meshes: list[Record], others: list[Record]
 ) -> None:
     """State the mesh stiffness of the planetary stage beside what others took for it."""
-    alike = [float(row["over ISO 6336-1"]) for row in others if not row["remark"]]
+    over_iso = [float(row["over ISO 6336-1"]) for row in others if not row["remark"]]
     guo = {row["mesh"]: row for row in others if row["source"] == "Guo et al. 2012"}
     along = "along the line of action [GN/m]"
     roots = max(
@@ -42,7 +42,7 @@ def answer(
     page.answer(
         "How stiff are the gear meshes of the NREL 750 kW gearbox?",
         f"Sun and planet have a mesh stiffness of {sun} by ISO 6336-1; values that others took are "
-        f"{min(alike):.2g} to {max(alike):.2g} times that of the standard.",
+        f"{min(over_iso):.2g} to {max(over_iso):.2g} times that of the standard.",
         [
             *(
                 page.value(

@@ -18,7 +18,7 @@ RATIO = 0.8
 """Least over largest stiffness of a pair of teeth, which the thesis does not state."""
 
 POINTS = 4000
-ALIKE = 0.05
+NEARLY_EQUAL = 0.05
 """How near to the standard's a stiffness counts as the same."""
 
 
@@ -97,9 +97,9 @@ def answer(page: Page, rows: list[Record]) -> None:
         verdict = (
             f"The file's stiffness of {most} is {apart[most]:.2g} times that of ISO 6336-1, which "
             "is furthest from it."
-            if abs(apart[most] - 1.0) > ALIKE
-            else f"The file's stiffness is that of ISO 6336-1 within {percent_text(ALIKE)}, of "
-            "all meshes where it is stated."
+            if abs(apart[most] - 1.0) > NEARLY_EQUAL
+            else f"The file's stiffness is that of ISO 6336-1 within {percent_text(NEARLY_EQUAL)}, "
+            "of all meshes where it is stated."
         )
     else:
         verdict = (

@@ -39,14 +39,14 @@ from fe_drivetrain.turbine_loads.histories import damage_equivalent_load, rainfl
 MACHINE = "nrel_750kw"
 SPEED, RATED = 22.1 * np.pi / 30.0, 3.25e5  # rad/s, N m, of the rotor of this machine
 DEVIATION = 2e4 / RATED
-"""Of the torque in its band, over the rated one."""
+"""Deviation of the torque in its band, over the rated one."""
 RATED_WIND = 14.0  # m/s
 FINE, EVERY = 0.01, 5  # s of the simulation, samples of it for each that is recorded
 STEP, BAND, USED = EVERY * FINE, (0.05, 5.0), (0.2, 3.0)  # s, Hz
 DAMPING, EFFICIENCY, PULSES = 4e5, 0.95, 4096  # N m s/rad of the shaft, -, a turn
 SLOPE = 4.0
 GAUGE = Sensor(gain=0.93, offset=1e3, noise=2e2)
-"""Of the case's own machine; of others in proportion to their rated torque."""
+"""Gauge of the case's own machine; those of others are in proportion to their rated torque."""
 WINDS, WINDOWS, TURBULENCE = (8, 9, 10), 3, 0.1
 WINDOW, MARGIN = 600.0, 0.5  # s, of a window, and cut off at either end of the record
 RECORDED = slice(round(MARGIN / FINE), -round(MARGIN / FINE), EVERY)

@@ -30,9 +30,9 @@ SHOWN = ("NTA", "STB", "STD")
 TORQUE = "Torque of the shaft, high-speed side, while torque is lost and brakes act"
 CLEAN, NOISY = "by the twist", "by the twist with noise, three peaks"
 NOISE = 1e-4 * KNOWN.stiffness / KNOWN.torque
-"""Of the measured twist, over that under rated torque: 0.1 mrad by the case's own drivetrain."""
+"""Noise of the measured twist, over that under rated torque: 0.1 mrad of the case's own."""
 RATED_SPEED = 1510 * np.pi / 30.0
-"""Of the generator in the scripts [rad/s]."""
+"""Speed of the generator in the scripts [rad/s]."""
 
 
 @case(

@@ -103,7 +103,7 @@ class Hub(NamedTuple):
 
 
 def pitch_held(sets: Sequence[Winds]) -> list[Hub]:
-    """Of the surrogate, whose pitch and speed are those of the mean wind."""
+    """Hub loads of the surrogate, whose pitch and speed are those of the mean wind."""
     return [
         Hub(loads, np.repeat(rotor_speed()[:, None], loads.shape[1], axis=1))
         for loads in hub_loads_of(sets)
@@ -113,7 +113,7 @@ def pitch_held(sets: Sequence[Winds]) -> list[Hub]:
 def with_controller(
     sets: Sequence[Winds], progress: Callable[[int], None] | None = None
 ) -> list[Hub]:
-    """Of the turbine that moves, under the same seeds, with the speed of each step.
+    """Hub loads of the turbine that moves, under the same seeds, with the speed of each step.
 
     Parameters
     ----------

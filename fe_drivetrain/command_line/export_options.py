@@ -31,7 +31,7 @@ class Export:
     out : Path
         The file; of several formats the beginning of their files' names, or a folder.
     formats : tuple[str, ...]
-        Of condensed matrices; none for a mesh or a model, by the ending of the file.
+        Formats of condensed matrices; none for a mesh or a model, by the ending of the file.
     what, at, level : str or None
         Part, points and model level; None for the default.
     modes : int or None
@@ -152,7 +152,7 @@ class Export:
     def files(self, found: Drivetrain | Component) -> dict[str, Path]:
         """The files to write by format; "" of a mesh or model.
 
-        Of several formats each is named by what they have in common, and its format.
+        Where there are several formats, each file is named by what they share, and its format.
 
         Parameters
         ----------

@@ -113,7 +113,7 @@ class Superelement:
     origin : Origin
         Where it comes from.
     bound, rollers : str
-        Of the bearing units in the stiffness, in words: which of their bounds it has, and whether
+        Bearing units in the stiffness, in words: which of their bounds it has, and whether
         rollers give in it; empty where there are none, or it is not known.
     """
 

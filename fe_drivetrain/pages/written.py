@@ -27,7 +27,7 @@ def write_page(result: Result, folder: str | Path) -> Path:
     Parameters
     ----------
     result : Result
-        Of a study.
+        Result of a study.
     folder : str or Path
         Result folder, as in "reports/modes/mine": a project links it by its last two parts. It must
         not exist, be empty, or be of an earlier result.

@@ -15,7 +15,7 @@ from fe_drivetrain.studies.gear_answers import GearAnswer, MeshAnswer, Safety, s
 from fe_drivetrain.turbine_loads.histories.sites import HOURS_A_YEAR
 
 LEAST_SAFETY = "least safety factor over that required"
-"""Of all flanks and roots that are rated, as projects of validation name it."""
+"""Least of all flanks and roots that are rated, as projects of validation name it."""
 
 _SHOWN = 6  # key figures
 _DIGITS = 4

@@ -46,7 +46,7 @@ class ForcedBearing:
     name, entry_name : str
         In the drivetrain, and in the catalogue.
     entry : Entry
-        Of the catalogue.
+        Entry of the catalogue.
     rated : RatedBearing
         With ratings.
     rules : LifeRules

@@ -183,7 +183,7 @@ def reasons(state: StepState) -> list[str]:
 
 
 def _together(sentences: Iterable[str]) -> list[str]:
-    """Sentences that begin with a name in quotes, those that go on alike in one."""
+    """Sentences that begin with a name in quotes, those that go on in the same way in one."""
     names: dict[str, list[str]] = {}
     for text in sentences:
         named = _NAMED.match(text)

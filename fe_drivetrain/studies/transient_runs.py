@@ -130,8 +130,8 @@ class Extreme:
         return self.least / self.rated if abs(self.rated) > 1e-6 * self.largest else np.nan
 
 
-ALIKE = 0.95
-"""Largest torque over rated, as a share of that of any shaft, from which on shafts are alike."""
+NEARLY_EQUAL = 0.95
+"""Largest torque over rated, as a share of any shaft's, from which on shafts count as equal."""
 
 
 def telling_torque(extremes: Mapping[str, Extreme]) -> str:
@@ -155,7 +155,7 @@ def telling_torque(extremes: Mapping[str, Extreme]) -> str:
         if one.kind == "torque" and np.isfinite(one.over_rated)
     }
     most = max(sizes.values(), default=0.0)
-    return next((name for name in reversed(sizes) if sizes[name] >= ALIKE * most), "")
+    return next((name for name in reversed(sizes) if sizes[name] >= NEARLY_EQUAL * most), "")
 
 
 @dataclass(frozen=True)

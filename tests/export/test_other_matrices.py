@@ -56,19 +56,19 @@ def small(*fields: object) -> str:
 
 
 def dmig(
-    name: str, matrix: Floats, freedoms: list[tuple[int, int]], card: Callable[..., str] = free
+    name: str, matrix: Floats, degrees: list[tuple[int, int]], card: Callable[..., str] = free
 ) -> str:
     """The lower triangle, a term a line."""
     lines = [card("DMIG", name, 0, 6, 2, 0)]
-    for j, column in enumerate(freedoms):
-        for i in range(j, len(freedoms)):
+    for j, column in enumerate(degrees):
+        for i in range(j, len(degrees)):
             if matrix[i, j]:
                 value = repr(float(matrix[i, j])).replace("e+", "D")
-                lines.append(card("DMIG", name, *column, "", *freedoms[i], value))
+                lines.append(card("DMIG", name, *column, "", *degrees[i], value))
     return "".join(lines)
 
 
-FREEDOMS = [(grid, component) for grid in (3, 11) for component in range(1, 7)]
+DEGREES = [(grid, component) for grid in (3, 11) for component in range(1, 7)]
 
 
 def grids(scale: float = 1.0) -> str:
@@ -77,7 +77,7 @@ def grids(scale: float = 1.0) -> str:
 
 
 def deck(stiffness: Floats = STIFFNESS, mass: Floats = MASS, head: str = "") -> str:
-    return head + grids() + dmig("KAAX", stiffness, FREEDOMS) + dmig("MAAX", mass, FREEDOMS)
+    return head + grids() + dmig("KAAX", stiffness, DEGREES) + dmig("MAAX", mass, DEGREES)
 
 
 def read(folder: Path, text: str, **said: Any) -> Superelement:
@@ -104,7 +104,7 @@ def test_an_export_without_its_comments_has_the_same_matrix(tmp_path: Path) -> N
 def test_grid_and_dmig_of_others_are_read(tmp_path: Path) -> None:
     close(read(tmp_path, deck()))
     head = "SOL 103\nCEND\nK2GG = KAAX\nM2GG= maax\nBEGIN BULK\n"
-    close(read(tmp_path, deck(head=head) + dmig("KOTHER", STIFFNESS, FREEDOMS) + "ENDDATA\nJUNK"))
+    close(read(tmp_path, deck(head=head) + dmig("KOTHER", STIFFNESS, DEGREES) + "ENDDATA\nJUNK"))
     turned = read(tmp_path, deck(), points=POINTS[::-1])
     assert turned.points == ("foot", "bore")
     np.testing.assert_allclose(turned.stiffness[:6, :6], STIFFNESS[6:, 6:], rtol=1e-12)
@@ -128,7 +128,7 @@ def test_millimetres_newtons_and_tonnes_are_taken_as_such(tmp_path: Path) -> Non
     motions = np.tile([1e3, 1e3, 1e3, 1.0, 1.0, 1.0], 2)  # of the file for those in m and rad
     scaled = STIFFNESS * 1e3 / np.outer(motions, motions)
     masses = MASS * 1e3 / np.outer(motions, motions)
-    text = grids(1e3) + dmig("K", scaled, FREEDOMS) + dmig("M", masses, FREEDOMS)
+    text = grids(1e3) + dmig("K", scaled, DEGREES) + dmig("M", masses, DEGREES)
     close(read(tmp_path, text, units="mm"))
     assert scaled[0, 0] == pytest.approx(STIFFNESS[0, 0] / 1e3)  # N/mm
     assert masses[0, 0] == pytest.approx(MASS[0, 0] / 1e3)  # t
@@ -144,7 +144,7 @@ def test_motions_in_another_coordinate_system_are_turned(tmp_path: Path) -> None
     text = free("CORD2R", 7, "", 0.0, 0.0, 0.0, 1.0, 0.0, 0.0) + free("", 0.0, 1.0, 0.0)
     text += free("GRID", 3, 0, *map(float, POSITIONS[0])) + free("GRID", 11, 7, *at.tolist(), 7)
     local = (turn.T @ STIFFNESS @ turn, turn.T @ MASS @ turn)
-    close(read(tmp_path, text + dmig("K", local[0], FREEDOMS) + dmig("M", local[1], FREEDOMS)))
+    close(read(tmp_path, text + dmig("K", local[0], DEGREES) + dmig("M", local[1], DEGREES)))
 
 
 def test_modes_of_craig_and_bampton_and_further_points_are_condensed(tmp_path: Path) -> None:
@@ -155,8 +155,8 @@ def test_modes_of_craig_and_bampton_and_further_points_are_condensed(tmp_path: P
     stiffness[12:, 12:] = np.diag([4e5, 9e5])
     mass[12:, 12:] = np.eye(2)
     mass[12, :12] = mass[:12, 12] = 3.0
-    freedoms = [*FREEDOMS, *modes]
-    close(read(tmp_path, grids() + dmig("K", stiffness, freedoms) + dmig("M", mass, freedoms)))
+    degrees = [*DEGREES, *modes]
+    close(read(tmp_path, grids() + dmig("K", stiffness, degrees) + dmig("M", mass, degrees)))
     middle = POSITIONS.mean(axis=0)
     halves = np.zeros((18, 18))
     soft = np.diag(np.full(6, 1e8))
@@ -165,7 +165,7 @@ def test_modes_of_craig_and_bampton_and_further_points_are_condensed(tmp_path: P
     second = np.r_[12:18, 6:12]
     halves[np.ix_(second, second)] += between(np.array([middle, POSITIONS[1]]), soft)
     text = grids() + free("GRID", 20, "", *map(float, middle))
-    more = [*FREEDOMS, *((20, c) for c in range(1, 7))]
+    more = [*DEGREES, *((20, c) for c in range(1, 7))]
     found = read(tmp_path, text + dmig("K", halves, more))
     assert found.mass is None
     arm = point_motions(POSITIONS[1:], middle)
@@ -177,7 +177,7 @@ def test_modes_of_craig_and_bampton_and_further_points_are_condensed(tmp_path: P
 @pytest.mark.parametrize(
     ("text", "said", "words"),
     [
-        (deck() + dmig("KAA", STIFFNESS, FREEDOMS) + dmig("KGG", STIFFNESS, FREEDOMS), {}, "has 3"),
+        (deck() + dmig("KAA", STIFFNESS, DEGREES) + dmig("KGG", STIFFNESS, DEGREES), {}, "has 3"),
         (deck(), {"stiffness_name": "KGG"}, "no stiffness 'KGG': name one of KAAX, MAAX"),
         (deck(), {"points": ("bore=4",)}, r"no component 1 of the point bore \(4\)"),
         (deck(), {"points": ("bore",)}, "'bore'.* must be as in 'hub=101'"),
@@ -185,8 +185,8 @@ def test_modes_of_craig_and_bampton_and_further_points_are_condensed(tmp_path: P
         (deck(), {"points": ("bore=3", "foot=3")}, "are the same one"),
         (deck(), {"units": "ft"}, "`units='ft'` must be one of m, mm"),
         (grids(), {}, "no square DMIG entries"),
-        (dmig("K", STIFFNESS, FREEDOMS), {}, r"no position of the point bore \(3\)"),
-        (dmig("K", STIFFNESS, FREEDOMS), {"points": ()}, "position and six degrees of freedom"),
+        (dmig("K", STIFFNESS, DEGREES), {}, r"no position of the point bore \(3\)"),
+        (dmig("K", STIFFNESS, DEGREES), {"points": ()}, "position and six degrees of freedom"),
         (deck().replace("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,6,4"), {}, "line 3: .*complex"),
         (deck().replace("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,7,2"), {}, "line 3: .* the form 7"),
         (deck().replace("DMIG,KAAX,0", "DMIG,KBBX,0"), {}, "line 4: DMIG KAAX has no header"),
@@ -254,8 +254,8 @@ def test_output4_of_others_is_read_to_the_last_bit(tmp_path: Path, order: str, f
 
 def test_points_of_output4_stand_in_bulk_data_beside_it(tmp_path: Path) -> None:
     """The order of rows is that of EXTRN; a mode comes before the points by its number."""
-    freedoms = sorted([*FREEDOMS, (1, 0)])
-    at = [freedoms.index(f) for f in FREEDOMS]
+    degrees = sorted([*DEGREES, (1, 0)])
+    at = [degrees.index(f) for f in DEGREES]
     stiffness, mass = 4e5 * np.eye(13), np.eye(13)
     stiffness[np.ix_(at, at)], mass[np.ix_(at, at)] = STIFFNESS, MASS
     path, beside = tmp_path / "a.op4", tmp_path / "a.pch"

@@ -104,7 +104,7 @@ def test_a_generator_on_its_foundation_stays_where_the_gearbox_leaves_it() -> No
 def test_planets_that_travel_leave_the_bearings_of_their_carrier_what_the_offset_puts_on_them() -> (
     None
 ):
-    """Three planets hold a carrier alike in all directions, wherever they are."""
+    """Three planets hold a carrier equally stiffly in all directions, wherever they are."""
     of = Prepared(library_machine("nrel_750kw"), RUNGS[1], Rated(3.25e5, 2.31))
     planned = event_of("offset", {"gearbox_uz": 1e-3, "gearbox_ry": 5e-4}).plan(of.of, 1.4, 0.01)
     run = of.event(with_travelling_planets(of.of, planned), 2e-3)

@@ -408,7 +408,7 @@ def test_samples_of_a_history_are_even_where_some_are_left_out(
 
 
 def test_what_the_first_mode_keeps_of_the_ratios_is_said() -> None:
-    """Of two masses all of it; of bodies that are light against both ends next to nothing."""
+    """All of it with two masses; with bodies that are light against both ends next to nothing."""
     ratios = DampingRatios(shafts=0.03, meshes=0.1)
     assert_allclose(first_mode_damping(machine_of(two_masses()), ratios), 0.03, rtol=1e-12)
     park = read_drivetrain("park_2021", PARK)

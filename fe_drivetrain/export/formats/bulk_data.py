@@ -15,7 +15,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.export.formats.labelled_matrices import Freedom, Matrix, Place
+from fe_drivetrain.export.formats.labelled_matrices import Degree, Matrix, Place
 
 _REAL = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+))(?:[EeDd]([-+]?\d+)|([-+]\d+))?", re.ASCII)
 _CHOSEN = re.compile(r"(?i)\s*([KM])2(?:GG|PP)\s*=\s*(\w+)")
@@ -48,7 +48,7 @@ class BulkData:
     """
 
     places: dict[int, Place] = field(default_factory=dict)
-    order: list[Freedom] = field(default_factory=list)
+    order: list[Degree] = field(default_factory=list)
     matrices: dict[str, Matrix] = field(default_factory=dict)
     stiffness: str = ""
     mass: str = ""
@@ -195,18 +195,18 @@ def _place(grid: Entry, systems: dict[int, tuple[Floats, Floats]]) -> Place:
     return Place(at, systems[moves][1])
 
 
-def _order(entries: dict[str, list[Entry]]) -> list[Freedom]:
+def _order(entries: dict[str, list[Entry]]) -> list[Degree]:
     """Degrees of freedom of EXTRN, else of ASET, BSET and their like, in order of numbers."""
     for names in (("EXTRN",), ("ASET", "ASET1", "BSET", "BSET1", "CSET", "QSET", "QSET1")):
-        found: set[Freedom] = set()
+        found: set[Degree] = set()
         for entry in (entry for name in names for entry in entries.get(name, [])):
-            found.update(_freedoms_of(entry))
+            found.update(_degrees_of(entry))
         if found:
             return sorted(found)
     return []
 
 
-def _freedoms_of(entry: Entry) -> Iterator[Freedom]:
+def _degrees_of(entry: Entry) -> Iterator[Degree]:
     if entry.name.endswith("1"):
         components, rest = entry.fields[0] or "0", entry.fields[1:]
         numbers = _listed(entry, rest)
@@ -246,7 +246,7 @@ def _listed(entry: Entry, cells: list[str]) -> list[int]:
 def _matrices(entries: list[Entry]) -> dict[str, Matrix]:
     """Matrices of DMIG entries, square ones of real numbers."""
     heads: dict[str, Entry] = {}
-    terms: dict[str, dict[tuple[Freedom, Freedom], float]] = {}
+    terms: dict[str, dict[tuple[Degree, Degree], float]] = {}
     for entry in entries:
         name = entry.fields[0].upper()
         if entry.fields[1] == "0":
@@ -275,13 +275,13 @@ def _check_head(name: str, entry: Entry) -> None:
         raise InputError(f"line {entry.line}: DMIG {name} is complex: write the real matrix")
 
 
-def _take_column(entry: Entry, terms: dict[tuple[Freedom, Freedom], float]) -> None:
+def _take_column(entry: Entry, terms: dict[tuple[Degree, Degree], float]) -> None:
     """Put the terms of one column: behind its degree of freedom and a blank, four fields each."""
-    column = _freedom(entry, 1)
+    column = _degree(entry, 1)
     for k in range(4, len(entry.fields), 4):
         if not any(entry.fields[k : k + 3]):
             continue
-        place = (_freedom(entry, k), column)
+        place = (_degree(entry, k), column)
         if place in terms:
             raise InputError(
                 f"line {entry.line}: DMIG {entry.fields[0]} has the term of row {place[0]} and "
@@ -290,7 +290,7 @@ def _take_column(entry: Entry, terms: dict[tuple[Freedom, Freedom], float]) -> N
         terms[place] = _real(entry, k + 2)
 
 
-def _freedom(entry: Entry, k: int) -> Freedom:
+def _degree(entry: Entry, k: int) -> Degree:
     number, component = _integer(entry, k), _integer(entry, k + 1, 0)
     if not (number > 0 and 0 <= component <= 6):
         raise InputError(
@@ -300,12 +300,12 @@ def _freedom(entry: Entry, k: int) -> Freedom:
     return number, component
 
 
-def _matrix(terms: dict[tuple[Freedom, Freedom], float], symmetric: bool) -> Matrix:
-    freedoms = sorted({freedom for place in terms for freedom in place})
-    at = {freedom: k for k, freedom in enumerate(freedoms)}
-    values = np.zeros((len(freedoms), len(freedoms)))
+def _matrix(terms: dict[tuple[Degree, Degree], float], symmetric: bool) -> Matrix:
+    degrees = sorted({degree for place in terms for degree in place})
+    at = {degree: k for k, degree in enumerate(degrees)}
+    values = np.zeros((len(degrees), len(degrees)))
     for (row, column), value in terms.items():
         values[at[row], at[column]] = value
         if symmetric:
             values[at[column], at[row]] = value
-    return Matrix(freedoms, values)
+    return Matrix(degrees, values)

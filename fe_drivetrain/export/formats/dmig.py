@@ -154,14 +154,14 @@ def _matrix_lines(name: str, matrix: Floats) -> Iterator[str]:
 
 def _matrices(path: Path, found: BulkData, entries: dict[str, str]) -> tuple[Floats, Floats | None]:
     matrices: dict[str, Floats] = {}
-    freedoms = [(grid, c) for grid in sorted(found.places) for c in range(1, 7)]
+    degrees = [(grid, c) for grid in sorted(found.places) for c in range(1, 7)]
     for letter, kind in _KINDS.items():
         name = entries.get(f"matrix {letter}", "")
         if name not in found.matrices:
             if letter == "K" or name:
                 raise InputError(f"{path} has no DMIG {name!r}: it must hold its {kind}")
             continue
-        if found.matrices[name].freedoms != freedoms:
+        if found.matrices[name].degrees != degrees:
             raise InputError(f"{path}: DMIG {name} has not the six degrees of freedom of each GRID")
         matrices[letter] = found.matrices[name].values
     return matrices["K"], matrices.get("M")

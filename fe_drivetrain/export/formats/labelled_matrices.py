@@ -21,7 +21,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.export.superelement import LARGEST, RIGID, Superelement
 
-Freedom = tuple[int, int]
+Degree = tuple[int, int]
 """Number of a point, and its component: 1 to 6 as in `MOTIONS`, or 0 of a scalar one."""
 
 _SINGULAR = 1e13  # condition of a stiffness with a unit diagonal
@@ -35,7 +35,7 @@ UNITS = {"m": (1.0, 1.0), "mm": (1e-3, 1e3)}
 class Matrix(NamedTuple):
     """A square matrix and the degrees of freedom of its rows, empty where the file has none."""
 
-    freedoms: list[Freedom]
+    degrees: list[Degree]
     values: Floats
 
 
@@ -137,8 +137,8 @@ def superelement_of(
         M = _chosen("mass", naming.mass_name or stated[1], matrices)
         assert K is not None
         points = [_point(text) for text in naming.points]
-        K = Matrix(_freedoms(K, points), K.values)
-        mass = None if M is None else _in_order(Matrix(_freedoms(M, points), M.values), K.freedoms)
+        K = Matrix(_degrees(K, points), K.values)
+        mass = None if M is None else _in_order(Matrix(_degrees(M, points), M.values), K.degrees)
         return _assembled(K, mass, places, points, naming.units)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
@@ -196,16 +196,16 @@ def _point(text: str) -> _Point:
     )
 
 
-def _freedoms(matrix: Matrix, points: Sequence[_Point]) -> list[Freedom]:
+def _degrees(matrix: Matrix, points: Sequence[_Point]) -> list[Degree]:
     """Degrees of freedom of a matrix's rows; without any, six for each point and then scalars."""
     size = len(matrix.values)
-    if matrix.freedoms:
-        if len(matrix.freedoms) != size:
+    if matrix.degrees:
+        if len(matrix.degrees) != size:
             raise InputError(
-                f"a matrix has {size} rows, but its points have {len(matrix.freedoms)} degrees of "
+                f"a matrix has {size} rows, but its points have {len(matrix.degrees)} degrees of "
                 "freedom: give the points of this file"
             )
-        return matrix.freedoms
+        return matrix.degrees
     if not points:
         raise InputError(
             f"it does not say which points its {size} rows are of: give {argument('points')}, as "
@@ -221,18 +221,18 @@ def _freedoms(matrix: Matrix, points: Sequence[_Point]) -> list[Freedom]:
     return [(n, c) for n in numbers for c in range(1, 7)] + scalars
 
 
-def _in_order(matrix: Matrix, freedoms: list[Freedom]) -> Floats:
+def _in_order(matrix: Matrix, degrees: list[Degree]) -> Floats:
     """A mass in the order of the stiffness; degrees of freedom without mass have none."""
-    at = {freedom: k for k, freedom in enumerate(freedoms)}
-    unknown = [f for k, f in enumerate(matrix.freedoms) if f not in at and matrix.values[k].any()]
+    at = {degree: k for k, degree in enumerate(degrees)}
+    unknown = [f for k, f in enumerate(matrix.degrees) if f not in at and matrix.values[k].any()]
     if unknown:
         raise InputError(
             f"its mass has the degree of freedom {unknown[0]}, for which it has no stiffness: "
             "correct it"
         )
-    known = [k for k, f in enumerate(matrix.freedoms) if f in at]
-    rows = [at[matrix.freedoms[k]] for k in known]
-    found = np.zeros((len(freedoms), len(freedoms)))
+    known = [k for k, f in enumerate(matrix.degrees) if f in at]
+    rows = [at[matrix.degrees[k]] for k in known]
+    found = np.zeros((len(degrees), len(degrees)))
     found[np.ix_(rows, rows)] = matrix.values[np.ix_(known, known)]
     return found
 
@@ -244,9 +244,9 @@ def _assembled(
     points: Sequence[_Point],
     unit: str,
 ) -> Superelement:
-    at = {freedom: k for k, freedom in enumerate(K.freedoms)}
+    at = {degree: k for k, degree in enumerate(K.degrees)}
     if not points:
-        whole = sorted({n for n, c in K.freedoms if c and all((n, d) in at for d in range(1, 7))})
+        whole = sorted({n for n, c in K.degrees if c and all((n, d) in at for d in range(1, 7))})
         points = [_Point(f"grid_{n}", n, None, None) for n in whole if n in places]
     if not points:
         raise InputError(
@@ -259,14 +259,14 @@ def _assembled(
         six = [(number, c) for c in range(1, 7)]
         if point.turning is not None:
             six[3:] = [(point.turning, c) for c in range(1, 4)]
-        if lost := [freedom for freedom in six if freedom not in at]:
+        if lost := [degree for degree in six if degree not in at]:
             raise InputError(
                 f"its stiffness has no component {lost[0][1]} of the point {point.name} "
                 f"({lost[0][0]}), which must have all six: name another point"
             )
         position, axes = _placed(point, number, places)
         positions.append(position)
-        kept += [at[freedom] for freedom in six]
+        kept += [at[degree] for degree in six]
         for first in (6 * k, 6 * k + 3):
             turns[first : first + 3, first : first + 3] = axes
     condensed = _condensed(K.values, mass, np.array(kept))

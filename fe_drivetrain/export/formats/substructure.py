@@ -19,7 +19,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.export.formats import matrix_market
 from fe_drivetrain.export.formats.labelled_matrices import (
     TAKEN_AS_IT_IS,
-    Freedom,
+    Degree,
     Matrix,
     Naming,
     superelement_of,
@@ -81,9 +81,9 @@ def _matrices(text: str) -> dict[str, Matrix]:
             rows.append([int(number) for number in words.split(",") if number])
         elif section in _NAMES:
             values[section] += [_number(cell) for cell in line.split(",") if cell.strip()]
-    freedoms = _freedoms(nodes, rows)
+    degrees = _degrees(nodes, rows)
     return {
-        _NAMES[kind]: Matrix(freedoms, _square(kind, numbers, len(freedoms), whole))
+        _NAMES[kind]: Matrix(degrees, _square(kind, numbers, len(degrees), whole))
         for kind, numbers in values.items()
         if kind in _NAMES
     }
@@ -96,12 +96,12 @@ def _number(cell: str) -> float:
     return float(text.upper().replace("D", "E"))
 
 
-def _freedoms(nodes: list[int], rows: list[list[int]]) -> list[Freedom]:
+def _degrees(nodes: list[int], rows: list[list[int]]) -> list[Degree]:
     """Degrees of freedom of the nodes: those of the first, and from a place on other ones."""
     if not nodes or not rows:
         raise ValueError("it has no nodes, or no degrees of freedom")
     changes = {row[0]: row[1:] for row in rows[1:]}
-    found: list[Freedom] = []
+    found: list[Degree] = []
     own = rows[0]
     for place, node in enumerate(nodes, 1):
         own = changes.get(place, own)

@@ -58,7 +58,7 @@ class HistoryTable(ABC):
     kind : str
         What it is, for messages.
     titles : list of str
-        Of all columns, with units as far as the file has them, as in "Fx [kN]".
+        Titles of all columns, with units as far as the file has them, as in "Fx [kN]".
     facts : dict
         What the file states of itself.
     advice : str

@@ -42,7 +42,7 @@ def matlab_variables(content: bytes) -> dict[str, Any]:
     Parameters
     ----------
     content : bytes
-        Of the whole file.
+        Bytes of the whole file.
 
     Raises
     ------

@@ -60,7 +60,7 @@ class Run(NamedTuple):
     file : Path
         The samples.
     names, units : list of str
-        Of the channels that the file of samples holds.
+        Names and units of the channels that the file of samples holds.
     scans : int or None
         How many samples there are; None where the file alone says it.
     packed : Packed or None
