@@ -187,6 +187,7 @@ def test_planets_of_a_whole_drivetrain_share_an_error_within_the_closed_forms() 
         ("dynamics/carrier_travels", "synthetic_2mw"),
         ("dynamics/elastic_ring", "nrel_750kw"),
         ("dynamics/load_sharing", "synthetic_2mw"),
+        ("dynamics/bearing_matrices", "synthetic_2mw_rolling"),
         ("dynamics/planet_bearings", "grc_750kw"),
     ],
 )
@@ -259,6 +260,7 @@ def test_three_points_are_those_of_the_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "drivetrain", "message"),
     [
+        ("dynamics/bearing_matrices", "OWN", r"give gearbox\.bearings or pins a catalogue"),
         ("dynamics/carrier_travels", "OWN", r"give gearbox\.stages\.0\.pins"),
         ("dynamics/elastic_ring", "OWN", "no planetary stage"),
         ("dynamics/load_sharing", "OWN", r"give gearbox\.stages\.0\.pins"),
