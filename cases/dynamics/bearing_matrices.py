@@ -37,6 +37,7 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.dynamics.bodies.mesh_loads import with_slices
 from fe_drivetrain.report import bars
+from fe_drivetrain.report.answer import Claim
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
@@ -87,7 +88,7 @@ class Found:
 def run(run: Run, page: Page) -> None:
     """Loads over a turn, load over the face, sharing and frequencies, statement by statement."""
     chosen = run.drivetrain(NAME)
-    chosen.state(page, "Gearbox bearings by six by six against their diagonal, and rollers")
+    chosen.state(page, topic="Gearbox bearings by six by six against their diagonal, and rollers")
     machine, torque = with_slices(machine_of(chosen.drivetrain), SLICES), chosen.rated_torque()
     moment = -torque if chosen.own else MOMENT
     page.assume("moment about y at the hub", moment / 1e3, "kN m", "for a load off that of rating")
@@ -280,7 +281,8 @@ def answer(page: Page, found: Found, level: str, own: bool) -> None:
     worst, matrix = found.worst(DIAGONAL), found.worst(MATRIX)
     planet = found.worst(DIAGONAL, planets=True)
     met = (worst > MATTERS) + (planet > MATTERS)
-    claim = ("does not hold", "holds in part", "holds")[met]
+    claims: tuple[Claim, ...] = ("does not hold", "holds in part", "holds")
+    claim = claims[met]
     ends = f"the thesis's argument {claim}"
     if own:
         ends = f"couplings {('do not matter', 'matter for some bearings', 'matter')[met]}"

@@ -10,6 +10,7 @@ from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics import (
     Asked,
     Machine,
+    OnRollers,
     Operation,
     RollerMatrices,
     Rung,
@@ -120,9 +121,10 @@ def turned(
                     f"{machine.title!r}: rollers find no equilibrium at {azimuth:.3g} rad: a "
                     "clearance leaves a part loose; give less clearance"
                 )
-            state, source = found.static, found
+            source: OnRollers | Static = found
+            state = found.static
         else:
-            state = source = at_rest(machine, rung, operation, azimuth, pressing)
+            source = state = at_rest(machine, rung, operation, azimuth, pressing)
         for name in names:
             radial[name].append(source.radial(name))
             wrenches[name].append(source.wrench(name))

@@ -23,6 +23,7 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.gear import LoadedSpline, Spline, loaded_spline
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.answer import Claim
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.report.suite.key_figures import KeyLimit
@@ -75,20 +76,24 @@ class Sun:
 def run(run: Run, page: Page) -> None:
     """Statics over a turn without a spline, on one, and on a joint; teeth by hand and exactly."""
     chosen = run.drivetrain(NAME)
-    chosen.state(page, "A sun on its spline: teeth out of line, and what floating does")
+    chosen.state(page, topic="A sun on its spline: teeth out of line, and what floating does")
     machine, torque = machine_of(chosen.drivetrain), chosen.rated_torque()
     number = sun_stage(machine)
     data = spline_of(page, machine, number)
     moment = -torque if chosen.own else MOMENT
     page.assume("moment about y at the hub", moment / 1e3, "kN m", "it tilts the carrier")
     rungs, angles = plain_rungs(chosen.drivetrain, machine), azimuths(4 if run.quick else 12)
-    models = {SHAFT: None, SPLINE: data, JOINT: data.model_copy(update={"slices": 1})}
+    models: dict[str, SplineData | None] = {
+        SHAFT: None,
+        SPLINE: data,
+        JOINT: data.model_copy(update={"slices": 1}),
+    }
     found: dict[tuple[str, str], Sun] = {}
     for load, tilt in ((CALM, 0.0), (TILTED, moment)):
         with run.step(load):
             operation = Operation(torque, tilt)
-            for name, spline in models.items():
-                of = with_spline(machine, number, spline)
+            for name, given in models.items():
+                of = with_spline(machine, number, given)
                 found[load, name] = over_turn(of, number, rungs[-1], operation, angles)
     spline = data.spline
     loaded = {load: worst(spline, found[load, SPLINE]) for load in (CALM, TILTED)}
@@ -335,7 +340,9 @@ def answer(
     stiff, on, free = (found[CALM, model] for model in (SHAFT, SPLINE, JOINT))
     helps = free.misplaced < stiff.misplaced
     shifts = [1e6 * found[load, JOINT].furthest for load in (CALM, TILTED)]
-    claim = "holds" if helps and near(shifts) else "holds in part" if helps else "does not hold"
+    claim: Claim = (
+        "holds" if helps and near(shifts) else "holds in part" if helps else "does not hold"
+    )
     said = "" if own else f": the thesis {claim}"
     word = "lowers" if helps else "does not lower"
     printed: KeyLimit = {} if own else {"beside": 1e6 * PRINTED, "by": "thesis"}

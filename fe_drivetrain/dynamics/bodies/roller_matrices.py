@@ -85,8 +85,14 @@ def roller_matrices(
     ----------
     machine : MachineTable
         The machine.
-    rung, operation, catalogues, azimuth, hub
-        As in `on_catalogue`.
+    rung, operation : Rung, Operation
+        Level and loads, as in `on_catalogue`.
+    catalogues : sequence of str or Path
+        Catalogue files beside the package's.
+    azimuth : float
+        Azimuth of the rotor's shaft [rad].
+    hub : array_like, (6,)
+        Forces and moments on the rotor beside those of the operation [N, N m].
 
     Raises
     ------
