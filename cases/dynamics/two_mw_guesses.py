@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,6 +27,7 @@ from fe_drivetrain.studies.transient_runs import LevelRun
 
 BASE = "as on this page"
 COLUMN = "guess"
+FEWEST = "fewest rollers loaded"
 
 Both = tuple[Extremes, Extremes]
 """Extremes of normal operation and of the shutdown."""
@@ -46,6 +47,30 @@ def moved_by(one: Chain, quick: bool) -> list[Record]:
     names = [name for name in changes if not quick or name in QUICK]
     rows = [{COLUMN: BASE, **results(one, one.normal.extremes, one.stop.extremes)}]
     return rows + [{COLUMN: name, **results(one, *changes[name]())} for name in names]
+
+
+def grown(name: str) -> str:
+    """Key of the largest load of a part in the shutdown over that in normal operation."""
+    return f"{name}: shutdown over normal"
+
+
+def sides(planet: int) -> str:
+    """Key of the largest upwind over the largest downwind load of a planet in the shutdown."""
+    return f"planet {planet}: upwind over downwind in the shutdown"
+
+
+def spread(moved: Sequence[Record], key: str, over: str = "") -> tuple[float, float]:
+    """Least and largest result with any guess, or of one result over another.
+
+    Parameters
+    ----------
+    moved : sequence of Record
+        Rows of `moved_by`.
+    key, over : str
+        Result, and that which divides it.
+    """
+    found = [float(str(row[key])) / (float(str(row[over])) if over else 1.0) for row in moved]
+    return min(found), max(found)
 
 
 LATER, BEFORE, WIND = (
@@ -69,18 +94,16 @@ def results(one: Chain, normal: Extremes, stop: Extremes) -> Record:
     """
     meshes = mesh_changes(one, normal, stop)
     bearings = bearing_changes(one, normal, stop)
-    found: Record = {f"{name}: shutdown over normal": of.ratio for name, of in meshes.items()}
+    found: Record = {grown(name): of.ratio for name, of in meshes.items()}
     last = list(meshes.values())[-1]
     found[f"{last.name}: least over rated"] = last.least / last.rated
     fast = list(one.rig.machine.bearings)[-2].name
     if fast in bearings:
-        found[f"{fast}: shutdown over normal"] = bearings[fast].ratio
+        found[grown(fast)] = bearings[fast].ratio
     pins = planet_pins(one)
     if pins is not None:
-        up, down = ([bearings[n].stop for n in side] for side in pins)
-        found["upwind over downwind in the shutdown, largest planet"] = max(
-            a / b for a, b in zip(up, down, strict=True)
-        )
+        for number, (up, down) in enumerate(zip(*pins, strict=True), start=1):
+            found[sides(number)] = bearings[up].stop / bearings[down].stop
     return found
 
 
@@ -210,8 +233,7 @@ def of_rollers(one: Chain, folder: Path) -> list[Record]:
         for state, result in (("normal", one.normal), ("shutdown", one.stop)):
             rolls = rolling(of, result.samples, name)
             row[f"pressure, {state} [MPa]"] = float(rolls.pressure.max()) / 1e6
-            row[f"rollers loaded, {state}"] = (
-                f"{int(rolls.loaded.min())} to {int(rolls.loaded.max())}"
-            )
+            row[f"{FEWEST}, {state}"] = int(rolls.loaded.min())
+            row[f"most rollers loaded, {state}"] = int(rolls.loaded.max())
         rows.append(row)
     return rows

@@ -10,6 +10,7 @@ from fe_drivetrain.cases.dynamics.two_mw_damage import Shares, damage_shares
 from fe_drivetrain.cases.dynamics.two_mw_guesses import (
     COLUMN,
     FLEXIBLE,
+    grown,
     moved_by,
     of_rollers,
     planet_pins,
@@ -34,11 +35,12 @@ from fe_drivetrain.cases.dynamics.two_mw_machine import (
     scaled_bearings,
     thesis_machine,
 )
-from fe_drivetrain.cases.dynamics.two_mw_words import Computed, Statement, statements
+from fe_drivetrain.cases.dynamics.two_mw_words import Computed, Statement, statements, whole_share
 from fe_drivetrain.cases.references.operated_machines import PEAK, RATED_WIND
 from fe_drivetrain.common import Floats
 from fe_drivetrain.dynamics import Level, pitch_contacts
 from fe_drivetrain.report import bars, chart, mark_events, trace
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.studies import LifeOptions
 
@@ -71,16 +73,15 @@ def run(run: Run, page: Page) -> None:
     if chosen.own:
         own_answer(page, meshes, bearings)
     else:
-        said = statements(computed(one, meshes, bearings, rollers, shares))
-        answer(page, meshes, said, moved)
+        rolls = of_rollers(one, run.folder)
+        known = meshes, bearings, rollers, moved, rolls
+        said = statements(computed(one, *known, shares))
+        answer(page, meshes, said, moved, shares)
         show_statements(page, said)
     show(page, one, meshes, bearings, rollers)
     show_guesses(page, moved)
     if not chosen.own:
-        page.table(
-            "Pressure and rollers of upwind bearing A by its size and clearance",
-            of_rollers(one, run.folder),
-        )
+        page.table("Pressure and rollers of upwind bearing A by its size and clearance", rolls)
     show_damage(page, shares)
     assume(page, one, chosen.own)
 
@@ -90,6 +91,8 @@ def computed(
     meshes: Mapping[str, Change],
     bearings: Mapping[str, Change],
     rollers: Mapping[str, tuple[Rolling, Rolling]],
+    moved: list[Record],
+    rolls: list[Record],
     shares: Shares | None,
 ) -> Computed:
     """All that the statements of the thesis are held against."""
@@ -110,13 +113,15 @@ def computed(
         {name: pair[0].max_shear[1] for name, pair in at.items()},
         rollers,
         (min(depths), max(depths)),
+        moved,
+        rolls,
         shares,
     )
 
 
 def level_band(name: str, moved: list[Record]) -> float:
     """What the level leaves uncertain of a mesh's ratio; 0 where it was not run."""
-    key = f"{name}: shutdown over normal"
+    key = grown(name)
     other = [row for row in moved if row[COLUMN] == FLEXIBLE]
     return abs(float(str(other[0][key])) - float(str(moved[0][key]))) if other else 0.0
 
@@ -144,7 +149,11 @@ def check(page: Page, one: Chain, meshes: Mapping[str, Change], moved: list[Reco
 
 
 def answer(
-    page: Page, meshes: Mapping[str, Change], said: list[Statement], moved: list[Record]
+    page: Page,
+    meshes: Mapping[str, Change],
+    said: list[Statement],
+    moved: list[Record],
+    shares: Shares | None,
 ) -> None:
     """State how many statements of the thesis hold, and the main ratios."""
     good, tested = counts(said)
@@ -174,7 +183,7 @@ def answer(
                 "least force of the fast mesh in the shutdown, over rated", fast.least / fast.rated
             ),
             page.value("statements of the thesis that hold", good),
-            page.value("statements that can be tested", tested),
+            *damage_figures(page, shares),
         ],
         hero=FORCES,
         cautions=[
@@ -186,6 +195,16 @@ def answer(
         ],
         claim="holds in part" if 0 < good < tested else "holds" if good else "does not hold",
     )
+
+
+def damage_figures(page: Page, shares: Shares | None) -> list[KeyFigure]:
+    """Share of shutdowns in the damage of 20 years, where it was counted."""
+    if shares is None:
+        return []
+    return [
+        page.value(f"share of shutdowns in the damage of {name} [%]", 100.0 * whole_share(kind))
+        for name, kind in (("gears", shares.gears), ("bearings", shares.bearings))
+    ]
 
 
 def counts(said: list[Statement]) -> tuple[int, int]:
