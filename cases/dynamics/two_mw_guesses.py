@@ -19,7 +19,12 @@ from fe_drivetrain.cases.dynamics.two_mw_machine import (
     other_level,
     scaled_bearings,
 )
-from fe_drivetrain.cases.references.operated_machines import Rig, driving, turbine_in_wind
+from fe_drivetrain.cases.references.operated_machines import (
+    Rig,
+    driving,
+    scaled_to,
+    turbine_in_wind,
+)
 from fe_drivetrain.dynamics import Level
 from fe_drivetrain.report.suite import Record
 from fe_drivetrain.studies.part_bearings import counted_parts
@@ -97,9 +102,10 @@ def results(one: Chain, normal: Extremes, stop: Extremes) -> Record:
     found: Record = {grown(name): of.ratio for name, of in meshes.items()}
     last = list(meshes.values())[-1]
     found[f"{last.name}: least over rated"] = last.least / last.rated
-    fast = list(one.rig.machine.bearings)[-2].name
-    if fast in bearings:
-        found[grown(fast)] = bearings[fast].ratio
+    rear = f"stage {len(one.rig.machine.stages)} "
+    fast = [b.name for b in one.rig.machine.bearings if b.holds.startswith(rear)]
+    if known := [name for name in fast if name in bearings][-2:]:
+        found[grown(known[0])] = bearings[known[0]].ratio
     pins = planet_pins(one)
     if pins is not None:
         for number, (up, down) in enumerate(zip(*pins, strict=True), start=1):
@@ -200,7 +206,7 @@ def of_wind(one: Chain) -> dict[str, Callable[[], Both]]:
     power, speed = rated.torque * rated.rotor_speed, rated.rotor_speed
 
     def run(wind: float, turbulence: str, seed: int, alone: bool) -> Both:
-        made = turbine_in_wind(power, speed, wind, turbulence, seed)
+        made = scaled_to(turbine_in_wind(wind, turbulence, seed), power, speed)
         return one.rig.normal(driving(made, alone)).extremes, one.stop.extremes
 
     return {

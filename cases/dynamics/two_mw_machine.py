@@ -11,9 +11,11 @@ from typing import Any
 from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
 from fe_drivetrain.cases.references.operated_machines import (
     EVENT_STEP,
+    HISTORY_STEP,
     Rig,
     driving,
     rig_of,
+    scaled_to,
     stop_values,
     turbine_in_wind,
 )
@@ -147,7 +149,7 @@ def chain(
     """
     drivetrain, speed = chosen.drivetrain, chosen.rotor_speeds()[1]
     rig = rig_of(drivetrain, level)
-    made = turbine_in_wind(chosen.rated_torque() * speed, speed)
+    made = scaled_to(turbine_in_wind(), chosen.rated_torque() * speed, speed)
     file = folder / "normal_operation.csv"
     made.write(file)
     values = stop_values(drivetrain, rig)
@@ -159,7 +161,7 @@ def chain(
         rig,
         driving(made),
         values,
-        happen("operation", loads=file),
+        happen("operation", loads=file, step=HISTORY_STEP),
         happen("stop", values, step=None if damage else 2.0 * EVENT_STEP),
         {one.name: one for one in counted.bearings},
     )

@@ -1,6 +1,7 @@
 """A 2 MW machine in six degrees of freedom: normal operation against shutdown, part by part."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,7 @@ from fe_drivetrain.cases.dynamics.two_mw_loads import (
 from fe_drivetrain.cases.dynamics.two_mw_machine import (
     CLEARANCE,
     SCALE,
+    TWO_MW,
     Chain,
     chain,
     scaled_bearings,
@@ -57,7 +59,9 @@ SAME = 0.02
 )
 def run(run: Run, page: Page) -> None:
     """Loads, reversals, contact stress, rollers and damage in both states, beside the thesis."""
-    chosen = run.drivetrain(thesis_machine())
+    chosen = run.drivetrain(TWO_MW, gears=True)
+    if not chosen.own:
+        chosen = replace(chosen, drivetrain=thesis_machine())
     chosen.state(page, topic="Normal operation against shutdown, in six degrees of freedom")
     lives = LifeOptions() if chosen.own else scaled_bearings(run.folder)
     with run.step("normal operation and shutdown"):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import sqrt
 
 import numpy as np
 from scipy.optimize import newton
@@ -39,51 +38,52 @@ PEAK = 1.32
 SIZED = 4.5
 """Length of stops by which a brake is sized [s]."""
 
-HISTORY_STEP, EVENT_STEP = 5e-3, 5e-4
+HISTORY_STEP, EVENT_STEP = 2e-3, 5e-4
 """Steps of operation and of stops [s]."""
 
-_TWO_MW = Rotor()
+SPEED = 1.895
+"""Rated speed of his rotor [rad/s]: 18.1 rpm, Table 3.1."""
 
 
 def turbine_in_wind(
-    power: float,
-    speed: float,
-    wind: float = RATED_WIND,
-    turbulence: str = "medium",
-    seed: int = 1,
+    wind: float = RATED_WIND, turbulence: str = "medium", seed: int = 1
 ) -> TurbineHistory:
-    """A turbine with its controller in turbulent wind, of the size that belongs to a power.
+    """The generic 2 MW turbine with its controller in turbulent wind, for 20 s.
 
     Parameters
     ----------
-    power, speed : float
-        Rated power and speed of its rotor [W, rad/s].
     wind : float
         Mean wind speed [m/s].
     turbulence : str
         As of `Condition`.
     seed : int
         Seed of the wind.
-
-    Returns
-    -------
-    history : TurbineHistory
-        20 s of the rotor of `Rotor`, whose radius grows with the root of the power and whose mass
-        with the cube of that.
     """
-    size = sqrt(power / _TWO_MW.rated_power)
-    radius = size * _TWO_MW.radius
-    rotor = replace(
-        _TWO_MW,
-        rated_power=power,
-        radius=radius,
-        hub_height=size * _TWO_MW.hub_height,
-        rotor_mass=size**3 * _TWO_MW.rotor_mass,
-        blade_start=size * _TWO_MW.blade_start,
-        tip_speed_limit=speed * radius,
-    )
+    rotor = replace(Rotor(), tip_speed_limit=SPEED * Rotor.radius)
     condition = Condition(wind, turbulence, 0.2, seed)
     return turbine_history(condition, similar_turbine(rotor), duration=LASTING)
+
+
+def scaled_to(made: TurbineHistory, power: float, speed: float) -> TurbineHistory:
+    """A history of the 2 MW turbine as that of another: forces go with power, moments with torque.
+
+    Parameters
+    ----------
+    made : TurbineHistory
+        History of `turbine_in_wind`.
+    power, speed : float
+        Rated power and speed of the other's rotor [W, rad/s].
+    """
+    of_power, of_speed = power / Rotor.rated_power, speed / SPEED
+    of_torque = of_power / of_speed
+    sizes = np.array([of_power] * 3 + [of_torque] * 3)
+    return replace(
+        made,
+        history=replace(made.history, loads=sizes * made.history.loads),
+        rotor_speed=of_speed * made.rotor_speed,
+        generator_torque=of_torque * made.generator_torque,
+        power=of_power * made.power,
+    )
 
 
 def driving(made: TurbineHistory, torque_alone: bool = False) -> DriveHistory:
