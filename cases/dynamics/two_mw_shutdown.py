@@ -37,7 +37,9 @@ from fe_drivetrain.cases.dynamics.two_mw_machine import (
     scaled_bearings,
     thesis_machine,
 )
-from fe_drivetrain.cases.dynamics.two_mw_words import Computed, Statement, statements, whole_share
+from fe_drivetrain.cases.dynamics.two_mw_rolling_words import whole_share
+from fe_drivetrain.cases.dynamics.two_mw_statements import Computed, Statement
+from fe_drivetrain.cases.dynamics.two_mw_words import statements
 from fe_drivetrain.cases.references.operated_machines import PEAK, RATED_WIND
 from fe_drivetrain.common import Floats
 from fe_drivetrain.dynamics import Level, pitch_contacts

@@ -38,9 +38,7 @@ NEAR = 0.1
 """A stated ratio holds where ours is within so much of it."""
 
 COMPUTED = "Torque of the slow shaft in the computed shutdown"
-SMALL = (
-    "where small cycles are left out changes a median: the thesis samples at 250 kHz and says not"
-)
+SMALL = "where small cycles are left out changes a median: the thesis does not say"
 SIZED = f"brake sized to the printed peak of {PEAK}; the swing after the generator's loss adds"
 
 
