@@ -13,6 +13,7 @@ from fe_drivetrain.cases.gear.turbine_years import (
     SITE,
     WINDS,
     Duty,
+    MeshStop,
     computed_stop,
     mesh_of,
     operation,
@@ -27,6 +28,7 @@ from fe_drivetrain.gear import (
     RatedTooth,
     ToothDamage,
     contact_stress,
+    damage_of_history,
     damage_of_turns,
     endured_contact,
     endured_root,
@@ -38,7 +40,6 @@ from fe_drivetrain.report import bars
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.report.suite.chosen import SETTING
-from fe_drivetrain.studies.gear_spectra import TorqueSpectrum
 from fe_drivetrain.turbine_loads.histories import equivalent_level
 
 STAGES = (PlanetaryStage(19, 17, 56), PlanetaryStage(18, 36, 93), ParallelStage(95, 24))
@@ -315,7 +316,7 @@ def twenty_years(
     teeth: list[RatedTooth],
     limitless: list[RatedTooth],
     duty: Duty,
-    stop: Mapping[str, TorqueSpectrum],
+    stop: Mapping[str, MeshStop],
 ) -> list[Record]:
     """Operation and stops: damage of each tooth, by wind speed of the worst.
 
@@ -327,8 +328,8 @@ def twenty_years(
         With and without an endless limit of their stresses.
     duty : Duty
         How the turbine runs.
-    stop : mapping of str to TorqueSpectrum
-        Turns by torque in one stop, of each mesh.
+    stop : mapping of str to MeshStop
+        What each mesh carries in one stop.
     """
     years = list(operation(duty))
     rows: list[Record] = []
@@ -336,7 +337,7 @@ def twenty_years(
     for tooth, lasting in zip(teeth, limitless, strict=True):
         parts = [damage_of_turns(tooth, T, turns) for _, T, turns in years]
         once = stop[mesh_of(tooth.name)]
-        stops = damage_of_turns(tooth, once.torques, once.turns).times(STOPS * SITE.years)
+        stops = damage_of_history(tooth, *once).times(STOPS * SITE.years)
         total = sum(parts, start=stops)
         on = sum((damage_of_turns(lasting, T, n) for _, T, n in years), start=stops)
         by_wind[tooth.name] = [*parts, stops]
@@ -363,24 +364,29 @@ def twenty_years(
     of_teeth = {"flank": {str(row["tooth"]): float(row["flank"]) for row in rows}}
     page.add(bars(DAMAGES, of_teeth, "damage; 10⁻⁶ stands for less", least=1e-6))
     page.add(bars(f"Damage of the flank by wind speed: {worst}", of_wind, "damage"))
-    page.text(
+    page.text(site_text(duty, stop))
+    return rows
+
+
+def site_text(duty: Duty, stop: Mapping[str, MeshStop]) -> str:
+    """Site, torque and stops in words."""
+    return (
         f"Site with {SITE.mean_wind:.0f} m/s of mean wind, Rayleigh. Torque follows the power up "
         f"to {1e-6 * duty.power:.3g} MW at {duty.speed / RPM:.3g} 1/min, reached at "
         f"{RATED_WIND} m/s, and scatters normally by {100 * SCATTER:.0f} % of its mean "
         f"(assumed); {STOPS:.0f} stops a year, each computed by bodies that turn: generator off, "
-        "blades pitched in 2 s, then the brake, the file's own or one that brings the last shaft to "
-        f"{PEAK} of rated torque; meshes reach {largest(stop, duty):.2f} of rated "
+        "blades pitched in 2 s, then the brake, the file's own or one that brings the "
+        f"last shaft to {PEAK} of rated torque; meshes reach {largest(stop, duty):.2f} of rated "
         f"torque and -{largest(stop, duty, -1.0):.2f}. Histories, measured or simulated, "
         "come in by `damage_of_history` or `damage_of_levels`. Load factors are those of the "
         "rating without K_A, whose place the distribution takes. Without an endless limit the line "
         "from the knee to 1e10 cycles goes on below."
     )
-    return rows
 
 
-def largest(stop: Mapping[str, TorqueSpectrum], duty: Duty, sign: float = 1.0) -> float:
+def largest(stop: Mapping[str, MeshStop], duty: Duty, sign: float = 1.0) -> float:
     """Largest torque of all meshes in a stop over rated, of one sign, without it."""
-    return max(float((sign * one.torques).max()) for one in stop.values()) / duty.torque
+    return max(float((sign * one.torque).max()) for one in stop.values()) / duty.torque
 
 
 def counts(page: Page) -> None:

@@ -1,7 +1,6 @@
 """How a turbine runs in twenty years at a site: torques of its rotor, turns at each, and stops."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -10,8 +9,7 @@ from scipy.stats import norm
 from fe_drivetrain.cases.references.operated_machines import rig_of, stop_values
 from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import Drivetrain
-from fe_drivetrain.dynamics import Level
-from fe_drivetrain.studies.gear_spectra import TorqueSpectrum
+from fe_drivetrain.dynamics import Level, mesh_springs
 from fe_drivetrain.turbine_loads.histories import Site
 
 SITE = Site(mean_wind=10.0, years=20.0)
@@ -56,14 +54,31 @@ def operation(duty: Duty, levels: int = 41) -> Iterator[tuple[float, Floats, Flo
         yield float(wind), torque, share * time * 3600.0 * speed / (2.0 * np.pi)
 
 
-def computed_stop(drivetrain: Drivetrain, torque: float) -> dict[str, TorqueSpectrum]:
-    """Turns of the rotor in an emergency stop by torque, as the force of each mesh has it.
+class MeshStop(NamedTuple):
+    """What a mesh carries in a stop, sample by sample.
+
+    Attributes
+    ----------
+    torque : ndarray, (n,)
+        Torque of the rotor that its force stands for [N m].
+    speed : ndarray, (n,)
+        Speed of the rotor [rad/s].
+    step : float
+        Time between samples [s].
+    """
+
+    torque: Floats
+    speed: Floats
+    step: float
+
+
+def computed_stop(drivetrain: Drivetrain, torque: float) -> dict[str, MeshStop]:
+    """What each mesh carries in an emergency stop.
 
     Parameters
     ----------
     drivetrain : Drivetrain
         Whose bodies turn in the stop; with its brake, or one by `stop_values`.
-
     torque : float
         Rated torque of the rotor to which that of the stop is scaled [N m].
 
@@ -73,13 +88,14 @@ def computed_stop(drivetrain: Drivetrain, torque: float) -> dict[str, TorqueSpec
         It does not state rated power and speed, or no brake gives the peak of `stop_values`.
     """
     rig = rig_of(drivetrain, Level.TORSIONAL)
-    found = rig.stop(stop_values(drivetrain, rig))
-    assert found.parts is not None
-    scale = torque / rig.rated.torque
-    return {
-        name: replace(one, torques=scale * one.torques, width=scale * one.width)
-        for name, one in found.parts.meshes.items()
-    }
+    run = rig.stop(stop_values(drivetrain, rig))
+    found = {}
+    for mesh, springs in mesh_springs(rig.machine).items():
+        names = [f"force of {spring}" for spring in springs]
+        shares = [run.samples.of(name) / run.extremes[name].rated for name in names]
+        speed = run.samples.of("speed of rotor")
+        found[mesh] = MeshStop(torque * np.mean(shares, axis=0), speed, run.step)
+    return found
 
 
 def mesh_of(tooth: str) -> str:

@@ -16,7 +16,7 @@ from fe_drivetrain.cases.references.operated_machines import (
 )
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.drivetrain_file import read_drivetrain
+from fe_drivetrain.drivetrain_file import Drivetrain
 from fe_drivetrain.dynamics import Level
 from fe_drivetrain.report import chart, mark_events, trace
 from fe_drivetrain.report.suite import Page, Record, Run
@@ -104,15 +104,16 @@ def equivalent(of: Counts) -> float:
     return of.equivalent
 
 
-def computed_stop(run: Run) -> ComputedStop:
+def computed_stop(run: Run, drivetrain: Drivetrain) -> ComputedStop:
     """Run both states by bodies that turn, write their torque, and count it by ``loads``.
 
     Parameters
     ----------
     run : Run
         Its folder takes the records.
+    drivetrain : Drivetrain
+        The 2 MW drivetrain.
     """
-    drivetrain = read_drivetrain(TWO_MW)
     rig: Rig = rig_of(drivetrain, Level.TORSIONAL)
     values = stop_values(drivetrain, rig)
     both = rig.normal(driving(turbine_in_wind())), rig.stop(values, duration=LASTING)
@@ -157,10 +158,8 @@ def other_winds(rig: Rig, quick: bool) -> list[LevelRun]:
 
 def other_stops(rig: Rig, values: dict[str, float | str], quick: bool) -> list[LevelRun]:
     """Stops with the brake later, and with a brake half as strong; two where `quick`."""
-    changed: list[dict[str, float | str]] = [
-        {"brake": 0.5 * float(values["brake"])},
-        *({"braked": 3.0 + late} for late in LATER),
-    ]
+    changed: list[dict[str, float | str]] = [{"brake": 0.5 * float(values["brake"])}]
+    changed += [{"braked": 3.0 + late} for late in LATER]
     return [
         rig.stop({**values, **one}, duration=LASTING) for one in changed[: 2 if quick else None]
     ]

@@ -8,6 +8,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.histories.computed_stop import (
     COMPUTED,
     STATES,
+    TWO_MW,
     ComputedStop,
     check_counts,
     computed_rows,
@@ -15,6 +16,7 @@ from fe_drivetrain.cases.histories.computed_stop import (
     show_computed,
 )
 from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time, peak_between
+from fe_drivetrain.drivetrain_file import read_drivetrain
 from fe_drivetrain.dynamics import energy_error, equations_of_motion, spring_laws, varying
 from fe_drivetrain.report import chart, mark_events, trace
 from fe_drivetrain.report.number_text import formatted
@@ -62,8 +64,10 @@ QUANTITIES = (
 )
 def run(run: Run, page: Page) -> None:
     """Count a computed shutdown beside what is stated; make events to what is stated; grid loss."""
+    drivetrain = read_drivetrain(TWO_MW)
+    page.about(drivetrain, TWO_MW)
     with run.step("computed shutdown"):
-        of = computed_stop(run)
+        of = computed_stop(run, drivetrain)
     rows = computed_rows(of)
     show_computed(page, of, rows)
     check_counts(page, of)
@@ -73,8 +77,10 @@ def run(run: Run, page: Page) -> None:
             found = [of_seed(shaft, seed) for seed in seeds]
         table(page, shaft, found)
     draw(page)
-    check_grid_loss(page)
-    answer(page, check_energy(page), of, rows)
+    with page.of(None):
+        check_grid_loss(page)
+        lost = check_energy(page)
+    answer(page, lost, of, rows)
 
 
 def answer(page: Page, lost: ConvergenceInTime, of: ComputedStop, rows: list[Record]) -> None:
