@@ -135,7 +135,7 @@ def of_damage(of: Computed) -> list[Statement]:
             "shutdowns do most of the damage of gears and bearings",
             "bars",
             f"{percent_text(each[0])} of gears by ISO 6336, {percent_text(each[1])} of bearings "
-            f"by ISO 281; as he counts, {percent_text(min(his))} or more of meshes and planets",
+            f"by ISO 281; as he counts, all but {percent_text(1.0 - min(his))} of both",
             holds(min(each) > 0.5),
             "a count of cycles of the pressure leaves out its mean, which every tooth and roller "
             "feels at each pass",

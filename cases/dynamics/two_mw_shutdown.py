@@ -279,8 +279,36 @@ def show(
     page.table("Radial load, pressure and rollers (Figures 7.12, 7.16 to 7.18, 7.22 to 7.28)", rows)
     page.data("bearings", rows)
     pins = planet_pins(one)
-    if pins is not None and pins[0][0] in rollers:
-        show_rollers(page, pins[0][0], rollers[pins[0][0]])
+    if pins is None:
+        return
+    first = pins[0][0], pins[1][0]
+    for state, result in (("normal operation", one.normal), ("the shutdown", one.stop)):
+        page.chart(
+            f"Share of the time at each load of the first planet's bearings, {state}",
+            [trace(name, *density(result.samples.of(f"force of {name}") / 1e3)) for name in first],
+            "radial load [kN]",
+            "share of the time",
+        )
+    if first[0] in rollers:
+        show_rollers(page, first[0], rollers[first[0]])
+    show_pressures(page, rollers)
+
+
+def show_pressures(page: Page, rollers: Mapping[str, tuple[Rolling, Rolling]]) -> None:
+    """Show how long the pressure of each bearing is at each level, in both states."""
+    for place, state in enumerate(("normal operation", "the shutdown")):
+        traces = [
+            trace(name, *density(pair[place].pressure / 1e6))
+            for name, pair in rollers.items()
+            if float(np.ptp(pair[place].pressure)) > 0.0
+        ]
+        if traces:
+            page.chart(
+                f"Share of the time at each pressure of bearings, {state} (Figures 7.22, 7.23)",
+                traces,
+                "Hertz pressure [MPa]",
+                "share of the time",
+            )
 
 
 def over_time(one: Chain, meshes: Mapping[str, Change]) -> Any:

@@ -128,4 +128,4 @@ def against(ours: float, printed: float, span: tuple[float, float]) -> Stands:
 
 def of_guesses(span: tuple[float, float]) -> str:
     """What guesses do to a number, in words."""
-    return f"{span[0]:.2f} to {span[1]:.2f} by what is not printed"
+    return f"{span[0]:.2f} to {span[1]:.2f} with one guess changed"

@@ -14,9 +14,9 @@ from fe_drivetrain.cases.gear.turbine_years import (
     WINDS,
     Duty,
     MeshStop,
-    computed_stop,
     mesh_of,
     operation,
+    stop_of_meshes,
 )
 from fe_drivetrain.cases.references.operated_machines import PEAK
 from fe_drivetrain.cases.references.rated_gears import RatedMesh, rated_meshes, with_dynamics
@@ -130,7 +130,7 @@ def run(run: Run, page: Page) -> None:
     with run.step("constant load"):
         constant(page)
     with run.step("stop"):
-        stop = computed_stop(read_drivetrain("nrel_5mw"), FIVE.torque)
+        stop = stop_of_meshes(read_drivetrain("nrel_5mw"), FIVE.torque)
     with run.step("twenty years"):
         rows = twenty_years(page, rated_teeth(1.0), rated_teeth(1.0, endless=False), FIVE, stop)
     with run.step("counts"):
@@ -146,7 +146,7 @@ def own(run: Run, page: Page) -> None:
     found, ratings = own_ratings(chosen, page)
     duty = Duty(chosen.rated_torque() * speed, least, speed)
     with run.step("stop"):
-        stop = computed_stop(chosen.drivetrain, duty.torque)
+        stop = stop_of_meshes(chosen.drivetrain, duty.torque)
 
     def teeth_of(endless: bool) -> list[RatedTooth]:
         return [

@@ -72,7 +72,7 @@ class MeshStop(NamedTuple):
     step: float
 
 
-def computed_stop(drivetrain: Drivetrain, torque: float) -> dict[str, MeshStop]:
+def stop_of_meshes(drivetrain: Drivetrain, torque: float) -> dict[str, MeshStop]:
     """What each mesh carries in an emergency stop.
 
     Parameters
