@@ -217,7 +217,7 @@ def of_wind(one: Chain) -> dict[str, Callable[[], Both]]:
     }
 
 
-def of_rollers(one: Chain, folder: Path) -> list[Record]:
+def of_rollers(one: Chain, folder: Path, every: float) -> list[Record]:
     """Pressure and rollers of the first upwind planet bearing by its size and clearance.
 
     Parameters
@@ -226,6 +226,8 @@ def of_rollers(one: Chain, folder: Path) -> list[Record]:
         The machine, with bearings of `scaled_bearings`.
     folder : Path
         Takes catalogues.
+    every : float
+        Time from one equilibrium of rollers to the next [s].
     """
     pins = planet_pins(one)
     assert pins is not None
@@ -237,7 +239,7 @@ def of_rollers(one: Chain, folder: Path) -> list[Record]:
         of = next(b for b in counted.bearings if b.entry_name == PLANET)
         row: Record = {"size": size, "diametral clearance [mm]": 1e3 * clearance}
         for state, result in (("normal", one.normal), ("shutdown", one.stop)):
-            rolls = rolling(of, result.samples, name)
+            rolls = rolling(of, result.samples, name, every)
             row[f"pressure, {state} [MPa]"] = float(rolls.pressure.max()) / 1e6
             row[f"{FEWEST}, {state}"] = int(rolls.loaded.min())
             row[f"most rollers loaded, {state}"] = int(rolls.loaded.max())

@@ -23,7 +23,7 @@ from fe_drivetrain.studies import TransientResult
 from fe_drivetrain.studies.part_loads import ForcedBearing
 from fe_drivetrain.studies.transient_runs import Extreme, Samples
 
-EVERY = 0.01
+EVERY, QUICK_EVERY = 0.01, 0.05
 """Time from one equilibrium of rollers to the next [s]."""
 
 Extremes = Mapping[str, Extreme]
@@ -209,8 +209,8 @@ class Rolling:
     loaded: Floats
 
 
-def rolling(of: ForcedBearing, samples: Samples, name: str) -> Rolling:
-    """Rollers of a bearing in equilibrium with its load, every `EVERY` and at the largest load.
+def rolling(of: ForcedBearing, samples: Samples, name: str, every: float = EVERY) -> Rolling:
+    """Rollers of a bearing in equilibrium with its load, at times and at the extreme loads.
 
     Parameters
     ----------
@@ -220,10 +220,12 @@ def rolling(of: ForcedBearing, samples: Samples, name: str) -> Rolling:
         Loads over time.
     name : str
         Its name among the channels, as "stage 1 pin 2 upwind".
+    every : float
+        Time from one equilibrium to the next [s].
     """
     force = samples.of(f"force of {name}")
     step = float(samples.times[1] - samples.times[0])
-    at = np.arange(0, len(force), max(1, round(EVERY / step)))
+    at = np.arange(0, len(force), max(1, round(every / step)))
     at = np.union1d(at, [force.argmax(), force.argmin()])
     loads = np.zeros((len(at), 6))
     loads[:, 2] = np.maximum(force[at], 1.0)
@@ -257,10 +259,11 @@ def catalogued(one: Chain) -> dict[str, ForcedBearing]:
     return found | {name: of for name, of in one.bearings.items() if name in names}
 
 
-def rolled(one: Chain) -> dict[str, tuple[Rolling, Rolling]]:
-    """Rollers of all bearings in normal operation and in the shutdown."""
+def rolled(one: Chain, every: float = EVERY) -> dict[str, tuple[Rolling, Rolling]]:
+    """Rollers of all bearings in normal operation and in the shutdown, see `rolling`."""
+    states = one.normal.samples, one.stop.samples
     return {
-        name: (rolling(of, one.normal.samples, name), rolling(of, one.stop.samples, name))
+        name: (rolling(of, states[0], name, every), rolling(of, states[1], name, every))
         for name, of in catalogued(one).items()
     }
 

@@ -17,6 +17,8 @@ from fe_drivetrain.cases.dynamics.two_mw_guesses import (
     planet_pins,
 )
 from fe_drivetrain.cases.dynamics.two_mw_loads import (
+    EVERY,
+    QUICK_EVERY,
     Change,
     Rolling,
     bearing_changes,
@@ -70,8 +72,9 @@ def run(run: Run, page: Page) -> None:
         one = chain(chosen, run.folder, Level.RIGID, lives, damage=not run.quick)
     meshes = mesh_changes(one, one.normal.extremes, one.stop.extremes)
     bearings = bearing_changes(one, one.normal.extremes, one.stop.extremes)
+    every = QUICK_EVERY if run.quick else EVERY
     with run.step("rollers"):
-        rollers = rolled(one)
+        rollers = rolled(one, every)
     with run.step("guesses"):
         moved = moved_by(one, run.quick)
     shares = damage_shares(one, rollers)
@@ -79,7 +82,7 @@ def run(run: Run, page: Page) -> None:
     if chosen.own:
         own_answer(page, meshes, bearings)
     else:
-        rolls = of_rollers(one, run.folder)
+        rolls = of_rollers(one, run.folder, every)
         known = meshes, bearings, rollers, moved, rolls
         said = statements(computed(one, *known, shares))
         answer(page, meshes, said, moved, shares)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
+from fe_drivetrain.cases.dynamics import two_mw_guesses
 from fe_drivetrain.cases.dynamics.two_mw_damage import Share, cycle_damage
 from fe_drivetrain.cases.dynamics.two_mw_guesses import spread
 from fe_drivetrain.cases.dynamics.two_mw_loads import contact_of, rolling
@@ -20,6 +21,8 @@ from fe_drivetrain.cases.dynamics.two_mw_machine import (
 from fe_drivetrain.cases.dynamics.two_mw_rolling_words import whole_share
 from fe_drivetrain.cases.dynamics.two_mw_statements import against
 from fe_drivetrain.cases.gear.turbine_years import mesh_of
+from fe_drivetrain.cases.histories import computed_stop
+from fe_drivetrain.cases.references import operated_machines
 from fe_drivetrain.cases.references.operated_machines import (
     EVENT_STEP,
     SIZED,
@@ -31,6 +34,8 @@ from fe_drivetrain.cases.references.operated_machines import (
 )
 from fe_drivetrain.comparison.in_time import peak_between
 from fe_drivetrain.dynamics import Level, machine_of
+from fe_drivetrain.report.suite import Run
+from fe_drivetrain.report.suite.case import all_cases
 from fe_drivetrain.studies.part_bearings import counted_parts
 from fe_drivetrain.studies.transient_runs import Samples
 
@@ -119,3 +124,23 @@ def test_bearings_are_those_of_the_public_gearbox_in_another_size(tmp_path: Path
     assert rolls.loaded[2] < rolls.loaded[0]
     contact = contact_of(planet, float(rolls.pressure[0]))
     assert contact.pressure == pytest.approx(float(rolls.pressure[0]))
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("dynamics/two_mw_shutdown", "times as much"), ("histories/events", "ranges")],
+)
+def test_a_case_answers_for_a_users_drivetrain(
+    name: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(operated_machines, "LASTING", 4.0)
+    monkeypatch.setattr(computed_stop, "LASTING", 6.0)
+    monkeypatch.setattr(computed_stop, "WINDS", computed_stop.WINDS[:1])
+    monkeypatch.setattr(computed_stop, "LATER", ())
+    monkeypatch.setattr(two_mw_guesses, "QUICK", ())
+    results = all_cases()[name].results(Run({"drivetrain": "nrel_750kw"}, True, tmp_path))
+    assert results.passed
+    assert results.answer is not None
+    assert words in results.answer.verdict
+    assert "thesis" not in results.answer.model_dump_json()
+    assert any("printed numbers" in note for note in results.notes)
