@@ -40,7 +40,7 @@ from fe_drivetrain.cases.dynamics.two_mw_machine import (
     thesis_machine,
 )
 from fe_drivetrain.cases.dynamics.two_mw_rolling_words import whole_share
-from fe_drivetrain.cases.dynamics.two_mw_statements import Computed, Statement
+from fe_drivetrain.cases.dynamics.two_mw_statements import MORE, Computed, Statement
 from fe_drivetrain.cases.dynamics.two_mw_words import statements
 from fe_drivetrain.cases.references.operated_machines import PEAK, RATED_WIND
 from fe_drivetrain.common import Floats
@@ -87,7 +87,7 @@ def run(run: Run, page: Page) -> None:
         said = statements(computed(one, *known, shares))
         answer(page, meshes, said, moved, shares)
         show_statements(page, said)
-    show(page, one, meshes, bearings, rollers)
+    show(page, one, meshes, bearings, rollers, not chosen.own)
     show_guesses(page, moved)
     if not chosen.own:
         page.table("Pressure and rollers of upwind bearing A by its size and clearance", rolls)
@@ -264,12 +264,14 @@ def show(
     meshes: Mapping[str, Change],
     bearings: Mapping[str, Change],
     rollers: Mapping[str, tuple[Rolling, Rolling]],
+    printed: bool,
 ) -> None:
     """Show loads, histograms, stresses and rollers."""
     page.section("Loads of gears")
     ratios = {name: of.ratio for name, of in meshes.items()}
     gearbox = {name: of.ratio for name, of in bearings.items() if of.stop > 0.1 * of.normal}
-    page.add(bars(FORCES, {"meshes": ratios, "bearings": gearbox}, "shutdown over normal"))
+    groups = {"here": ratios, "thesis": dict(MORE)} if printed else {"here": ratios | gearbox}
+    page.add(bars(FORCES, groups, "shutdown over normal"))
     page.table(
         "Circumferential force and contact stress (Figures 7.11, 7.14, 7.15, 7.19 to 7.21)",
         mesh_rows(one, meshes),
@@ -278,6 +280,8 @@ def show(
     page.add(over_time(one, meshes))
     show_histograms(page, one, meshes)
     page.section("Loads of bearings")
+    if printed:
+        page.add(bars(f"{FORCES}, bearings", {"here": gearbox}, "shutdown over normal"))
     rows = bearing_rows(one, bearings, rollers)
     page.table("Radial load, pressure and rollers (Figures 7.12, 7.16 to 7.18, 7.22 to 7.28)", rows)
     page.data("bearings", rows)

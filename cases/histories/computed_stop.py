@@ -137,7 +137,7 @@ def computed_stop(run: Run, chosen: ChosenDrivetrain) -> ComputedStop:
         (shaft, state): counted_record(
             runs[state].samples.times,
             runs[state].samples.of(channel),
-            run.folder / f"computed {state}, {shaft} shaft.csv",
+            run.folder / f"{state}_{shaft}_shaft.csv".replace(" ", "_"),
         )
         for shaft, channel in channels.items()
         for state in STATES
