@@ -221,7 +221,6 @@ def of_gear_stresses(of: Computed) -> list[Statement]:
     normal = {name: pair[0] for name, pair in of.stress.items()}
     stop = {name: pair[1] for name, pair in of.stress.items()}
     order = [RING, SUN, MIDDLE, FAST]
-    depths = [1e3 * of.depth[name] for name in order]
     faces = "modules and faces chosen; equal forces on both meshes of a planet make 2.24"
     found = [
         Statement(
@@ -260,6 +259,13 @@ def of_gear_stresses(of: Computed) -> list[Statement]:
             "not testable",
             "goes with modules and faces, which are chosen; nominal, without load factors",
         ),
+        *of_depths([1e3 * of.depth[name] for name in order]),
+    ]
+
+
+def of_depths(depths: list[float]) -> list[Statement]:
+    """Figure 7.26, of depths of the largest shear, the fast stage's last [mm]."""
+    return [
         Statement(
             "7.26",
             "the largest shear is least deep in the fast stage, at about 0.4 mm",
