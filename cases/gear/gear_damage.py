@@ -1,5 +1,6 @@
 """Damage of the gears of the NREL 5 MW gearbox over twenty years, both flanks apart."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -12,13 +13,15 @@ from fe_drivetrain.cases.gear.turbine_years import (
     SITE,
     WINDS,
     Duty,
+    MeshStop,
+    mesh_of,
     operation,
-    shutdown,
+    stop_of_meshes,
 )
+from fe_drivetrain.cases.references.operated_machines import PEAK
 from fe_drivetrain.cases.references.rated_gears import RatedMesh, rated_meshes, with_dynamics
 from fe_drivetrain.comparison import round_off
-from fe_drivetrain.dynamics import gear_table
-from fe_drivetrain.dynamics.torsion import natural_modes, two_masses
+from fe_drivetrain.drivetrain_file import read_drivetrain
 from fe_drivetrain.gear import (
     ParallelStage,
     PlanetaryStage,
@@ -48,7 +51,7 @@ HOURS = 175200.0
 STOPS = 1100.0
 """A year (Al-Hamadani 2018, section 7)."""
 
-FIVE = Duty(5e6, 6.9 * RPM, 12.1 * RPM, 2.18)
+FIVE = Duty(5e6, 6.9 * RPM, 12.1 * RPM)
 RATED = FIVE.torque
 
 KISSSOFT = "KISSsoft 03/2017 reports in gfsReboucas/Drivetrain"
@@ -126,8 +129,10 @@ def run(run: Run, page: Page) -> None:
         return
     with run.step("constant load"):
         constant(page)
+    with run.step("stop"):
+        stop = stop_of_meshes(read_drivetrain("nrel_5mw"), FIVE.torque)
     with run.step("twenty years"):
-        rows = twenty_years(page, rated_teeth(1.0), rated_teeth(1.0, endless=False), FIVE)
+        rows = twenty_years(page, rated_teeth(1.0), rated_teeth(1.0, endless=False), FIVE, stop)
     with run.step("counts"):
         counts(page)
     answer(page, rows)
@@ -139,10 +144,9 @@ def own(run: Run, page: Page) -> None:
     chosen.state(page, topic="Damage of gears over twenty years")
     least, speed = chosen.rotor_speeds()
     found, ratings = own_ratings(chosen, page)
-    with run.step("first mode"):
-        table = gear_table(chosen.drivetrain)
-        swing = float(natural_modes(two_masses(table, "free")).frequencies[1])
-    duty = Duty(chosen.rated_torque() * speed, least, speed, swing)
+    duty = Duty(chosen.rated_torque() * speed, least, speed)
+    with run.step("stop"):
+        stop = stop_of_meshes(chosen.drivetrain, duty.torque)
 
     def teeth_of(endless: bool) -> list[RatedTooth]:
         return [
@@ -160,7 +164,7 @@ def own(run: Run, page: Page) -> None:
         ]
 
     with run.step("twenty years"):
-        rows = twenty_years(page, teeth_of(True), teeth_of(False), duty)
+        rows = twenty_years(page, teeth_of(True), teeth_of(False), duty, stop)
     check_own(page, found, teeth_of(True), duty)
     own_answer(page, rows)
     page.assume("wind of rated power", RATED_WIND, "m/s", "of the case; no file states it")
@@ -228,7 +232,7 @@ def own_answer(page: Page, rows: list[Record]) -> None:
         ],
         hero=DAMAGES,
         cautions=[
-            "Turbulence of the torque, wind of rated power and swings of stops are assumed; load "
+            "Turbulence of the torque, wind of rated power and times of stops are assumed; load "
             "factors are those of the file or by formula, without K_A.",
             "The command gears takes your own histories in place of the assumed ones.",
         ],
@@ -266,7 +270,7 @@ def answer(page: Page, rows: list[Record]) -> None:
         ],
         hero=DAMAGES,
         cautions=[
-            f"At S_H = {SAFETY[0]} and S_F = {SAFETY[1]}; turbulence of the torque and swings of "
+            f"At S_H = {SAFETY[0]} and S_F = {SAFETY[1]}; turbulence of the torque and times of "
             "stops are assumed, and load factors are those of the KISSsoft reports.",
             "The thesis weights fast shafts by the inverse of how often their teeth mesh, which "
             "does not hold: see the table of drivetrain C.",
@@ -308,7 +312,11 @@ def constant(page: Page) -> None:
 
 
 def twenty_years(
-    page: Page, teeth: list[RatedTooth], limitless: list[RatedTooth], duty: Duty
+    page: Page,
+    teeth: list[RatedTooth],
+    limitless: list[RatedTooth],
+    duty: Duty,
+    stop: Mapping[str, MeshStop],
 ) -> list[Record]:
     """Operation and stops: damage of each tooth, by wind speed of the worst.
 
@@ -320,14 +328,16 @@ def twenty_years(
         With and without an endless limit of their stresses.
     duty : Duty
         How the turbine runs.
+    stop : mapping of str to MeshStop
+        What each mesh carries in one stop.
     """
-    torque, speed, step = shutdown(duty)
     years = list(operation(duty))
     rows: list[Record] = []
     by_wind: dict[str, list[ToothDamage]] = {}
     for tooth, lasting in zip(teeth, limitless, strict=True):
         parts = [damage_of_turns(tooth, T, turns) for _, T, turns in years]
-        stops = damage_of_history(tooth, torque, speed, step).times(STOPS * SITE.years)
+        once = stop[mesh_of(tooth.name)]
+        stops = damage_of_history(tooth, *once).times(STOPS * SITE.years)
         total = sum(parts, start=stops)
         on = sum((damage_of_turns(lasting, T, n) for _, T, n in years), start=stops)
         by_wind[tooth.name] = [*parts, stops]
@@ -354,17 +364,29 @@ def twenty_years(
     of_teeth = {"flank": {str(row["tooth"]): float(row["flank"]) for row in rows}}
     page.add(bars(DAMAGES, of_teeth, "damage; 10⁻⁶ stands for less", least=1e-6))
     page.add(bars(f"Damage of the flank by wind speed: {worst}", of_wind, "damage"))
-    page.text(
+    page.text(site_text(duty, stop))
+    return rows
+
+
+def site_text(duty: Duty, stop: Mapping[str, MeshStop]) -> str:
+    """Site, torque and stops in words."""
+    return (
         f"Site with {SITE.mean_wind:.0f} m/s of mean wind, Rayleigh. Torque follows the power up "
         f"to {1e-6 * duty.power:.3g} MW at {duty.speed / RPM:.3g} 1/min, reached at "
         f"{RATED_WIND} m/s, and scatters normally by {100 * SCATTER:.0f} % of its mean "
-        f"(assumed); {STOPS:.0f} stops a year, each a swing of 1.2 of the rated torque at "
-        f"{duty.swing:.3g} Hz that dies out in 30 s (assumed). Histories, measured or simulated, "
+        f"(assumed); {STOPS:.0f} stops a year, each computed by bodies that turn: generator off, "
+        "blades pitched in 2 s, then the brake, the file's own or one that brings the "
+        f"last shaft to {PEAK} of rated torque; meshes reach {largest(stop, duty):.2f} of rated "
+        f"torque and -{largest(stop, duty, -1.0):.2f}. Histories, measured or simulated, "
         "come in by `damage_of_history` or `damage_of_levels`. Load factors are those of the "
         "rating without K_A, whose place the distribution takes. Without an endless limit the line "
         "from the knee to 1e10 cycles goes on below."
     )
-    return rows
+
+
+def largest(stop: Mapping[str, MeshStop], duty: Duty, sign: float = 1.0) -> float:
+    """Largest torque of all meshes in a stop over rated, of one sign, without it."""
+    return max(float((sign * one.torque).max()) for one in stop.values()) / duty.torque
 
 
 def counts(page: Page) -> None:

@@ -80,7 +80,7 @@ def own(run: Run, page: Page) -> None:
     least, speed = chosen.rotor_speeds()
     machine = machine_of(chosen.drivetrain)
     turns = loads_per_turn([counted_stage(stage) for stage in machine.stages])
-    duty = Duty(1.0, least, speed, 1.0)  # turns do not depend on the power
+    duty = Duty(1.0, least, speed)  # turns do not depend on the power
     rotor = {wind: float(n.sum()) for wind, _, n in operation(duty)}
     total = sum(rotor.values())
     check_counts(page, machine, turns)

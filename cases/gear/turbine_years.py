@@ -6,7 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import norm
 
+from fe_drivetrain.cases.references.operated_machines import rig_of, stop_values
 from fe_drivetrain.common import Floats
+from fe_drivetrain.drivetrain_file import Drivetrain
+from fe_drivetrain.dynamics import Level, mesh_springs
 from fe_drivetrain.turbine_loads.histories import Site
 
 SITE = Site(mean_wind=10.0, years=20.0)
@@ -19,7 +22,7 @@ RATED_WIND = 11.4
 
 
 class Duty(NamedTuple):
-    """How a turbine runs, and what the torque of its rotor swings at in a stop.
+    """How a turbine runs.
 
     Attributes
     ----------
@@ -27,14 +30,11 @@ class Duty(NamedTuple):
         Rated power [W].
     least, speed : float
         Least and rated speed of the rotor [rad/s].
-    swing : float
-        Frequency of the swing of a stop [Hz].
     """
 
     power: float
     least: float
     speed: float
-    swing: float
 
     @property
     def torque(self) -> float:
@@ -54,9 +54,53 @@ def operation(duty: Duty, levels: int = 41) -> Iterator[tuple[float, Floats, Flo
         yield float(wind), torque, share * time * 3600.0 * speed / (2.0 * np.pi)
 
 
-def shutdown(duty: Duty) -> tuple[Floats, Floats, float]:
-    """Torque and speed of a stop: a swing of the shaft that dies out while the rotor slows down."""
-    step = min(0.01, 0.02 / duty.swing)
-    t = np.arange(0.0, 30.0, step)
-    torque = duty.torque * 1.2 * np.exp(-0.15 * t) * np.cos(2.0 * np.pi * duty.swing * t)
-    return torque, duty.speed * (1.0 - t / 30.0), step
+class MeshStop(NamedTuple):
+    """What a mesh carries in a stop, sample by sample.
+
+    Attributes
+    ----------
+    torque : ndarray, (n,)
+        Torque of the rotor that its force stands for [N m].
+    speed : ndarray, (n,)
+        Speed of the rotor [rad/s].
+    step : float
+        Time between samples [s].
+    """
+
+    torque: Floats
+    speed: Floats
+    step: float
+
+
+def stop_of_meshes(drivetrain: Drivetrain, torque: float) -> dict[str, MeshStop]:
+    """What each mesh carries in an emergency stop.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        Whose bodies turn in the stop; with its brake, or one by `stop_values`.
+    torque : float
+        Rated torque of the rotor to which that of the stop is scaled [N m].
+
+    Raises
+    ------
+    InputError
+        It does not state rated power and speed, or no brake gives the peak of `stop_values`.
+    """
+    rig = rig_of(drivetrain, Level.TORSIONAL)
+    run = rig.stop(stop_values(drivetrain, rig))
+    found = {}
+    for mesh, springs in mesh_springs(rig.machine).items():
+        names = [f"force of {spring}" for spring in springs]
+        shares = [run.samples.of(name) / run.extremes[name].rated for name in names]
+        speed = run.samples.of("speed of rotor")
+        found[mesh] = MeshStop(torque * np.mean(shares, axis=0), speed, run.step)
+    return found
+
+
+def mesh_of(tooth: str) -> str:
+    """Name of the mesh that a flank is of, as "stage 1 ring-planet" of "stage 1 ring"."""
+    stage = " ".join(tooth.split()[:2])
+    if "ring" in tooth:
+        return f"{stage} ring-planet"
+    return f"{stage} sun-planet" if "sun" in tooth else f"{stage} mesh"

@@ -19,6 +19,7 @@ from . import machine_shafts as machine_shafts
 from . import manufactured as manufactured
 from . import mathieu as mathieu
 from . import one_norm as one_norm
+from . import operated_machines as operated_machines
 from . import park_2021 as park_2021
 from . import plane_rings as plane_rings
 from . import published_campaigns as published_campaigns

@@ -5,7 +5,8 @@ range, median range and mean, largest negative mean, damage-equivalent load.  `m
 histories that have these: it draws cycles of random size to the stated largest, median and sum of
 sixth powers, gives half of them a mean below and half above the stated median, and lays them on
 one large cycle so that rainflow counting (the history followed by itself, as in the thesis) finds
-each.  `grid_loss` has no statistics there; it is the motion of two masses.
+each.  They are no evidence for these statistics, to which they are drawn.  `grid_loss` has none
+there; it is the motion of two masses.
 """
 
 from __future__ import annotations
