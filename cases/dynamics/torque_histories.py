@@ -124,7 +124,7 @@ def of_own(
     with run.step("shutdown"):
         guesses = stops_by_guess(one, stop_step)
     stop = next(iter(guesses.values()))
-    own_answer(page, found, stop, CYCLES.format(one.letter), first_held(one))
+    own_answer(page, found, stop, CYCLES.format(one.letter))
     assume(page, one.per_minute)
     show(page, found)
     show_cycles(page, found, stop, guesses)

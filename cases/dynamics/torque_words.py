@@ -177,7 +177,7 @@ def of_generators(near: Sequence[str]) -> str:
     return "any guess's" if near else "no guess's"
 
 
-def own_answer(page: Page, found: Operated, stop: Cycled, hero: str, held: float) -> None:
+def own_answer(page: Page, found: Operated, stop: Cycled, hero: str) -> None:
     """State how a user's drivetrain swings in operation, and how much more in a shutdown."""
     read, usual = found.spread(""), found.spread("slip of 1 %")
     over = stop.range / read[MESH].mean
@@ -191,7 +191,10 @@ def own_answer(page: Page, found: Operated, stop: Cycled, hero: str, held: float
                 "torque of the fast shaft, standard deviation over rated", read[TORQUE].mean
             ),
             page.value(
-                "dominant frequency [Hz]", read[DOMINANT].mean, beside=held, by="first mode, held"
+                "dominant frequency [Hz]",
+                read[DOMINANT].mean,
+                beside=free_mode(found.one),
+                by="first mode, free",
             ),
             page.value("range of the mesh force in 20 s over rated", read[MESH].mean),
             page.value("range in a stop over that", over),
