@@ -105,7 +105,8 @@ def run(run: Run, page: Page) -> None:
     """Speeds, currents and springs from Table 4.6, and what guesses of the rest move."""
     del run
     d = GENERATORS[-1]
-    check_springs(page, d)
+    with page.of(published.drivetrain("nrel_750kw"), "nrel_750kw"):
+        check_springs(page, d)
     springs = {name: d.stiffness(x) for name, x in d.guesses().items()}
     modes = {name: first_modes(d.table, value) for name, value in springs.items()}
     answer(page, d, springs, modes)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.references import published_drivetrains as published
-from fe_drivetrain.cases.references.public_rotors import (
+from fe_drivetrain.cases.drivetrain.public_rotors import (
     INERTIA,
     PowerLaw,
     PublicRotor,
@@ -16,6 +15,7 @@ from fe_drivetrain.cases.references.public_rotors import (
     power_law,
     public_rotors,
 )
+from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.common import InputError
 from fe_drivetrain.drivetrain_file import Drivetrain
 from fe_drivetrain.report import trace
@@ -48,7 +48,8 @@ def run(run: Run, page: Page) -> None:
     law = power_law(
         np.array([one.length for one in rotors]), np.array([one.inertia for one in rotors])
     )
-    check_integrals(page, rotors)
+    with page.of(None):
+        check_integrals(page, rotors)
     rows = [row_of(one) for one in rotors]
     own = SETTING in run.settings or BLADE in run.settings
     if own:
@@ -273,51 +274,14 @@ def show_thesis(page: Page, rotors: tuple[PublicRotor, ...], law: PowerLaw) -> N
             }
         )
     page.table("Length of blades that printed inertias imply, hub left out", rows)
-    over, cube = over_blades(rotors), per_cube(rotors)
-    mass = [formula_mass(one.length) / one.blade_mass for one in rotors]
-    factor = (DIAMETERS[1] / DIAMETERS[0]) ** 3
-    fit = power_law(
-        np.array([2.0 * one.tip_radius for one in rotors]), np.array([one.torque for one in rotors])
-    )
-    page.table(
-        "Printed, ours, verdict",
-        [
-            statement(
-                "Eq 4.1: M = 2.95 L^2.13",
-                f"{min(mass):.2f} to {max(mass):.2f} of the public blades' mass",
-                "holds within 30 %" if max(mass) < 1.3 and min(mass) > 0.77 else "does not hold",
-                "nothing",
-            ),
-            statement(
-                "Eq 4.2: J = 0.212 M L^2 n",
-                f"J / (M L^2) is {min(coefficients(rotors)):.3f} to "
-                f"{max(coefficients(rotors)):.3f}; with Eq 4.1 {min(over):.2f} to {max(over):.2f} "
-                "of the public rotors' blades",
-                "too large for every rotor" if min(over) > 1.0 else "holds in part",
-                "mass along the blade; length and hub of A to D are not printed",
-            ),
-            statement(
-                "Eq 4.40: T1 / T2 = (D1 / D2)^3",
-                f"public rotors: torque over D^3 within a factor of {max(cube) / min(cube):.2f}, "
-                f"exponent {fit.exponent:.2f}",
-                "holds for equal tip speed and power over area alone",
-                f"diameters of A and B; with the V90's the factor is {factor:.3f}",
-            ),
-            statement(
-                "A and B run about rated torque under the scaled history of C",
-                f"mean torque {scaled_mean('A'):.2f} of rated for A, {scaled_mean('B'):.2f} for B",
-                "does not hold" if max(scaled_mean(k) for k in "AB") < 0.95 else "holds",
-                f"diameters; {PEAK} of rated of B is {PEAK / scaled_mean('B'):.2f} of the mean",
-            ),
-        ],
-    )
+    page.table("Printed, ours, verdict", verdicts(rotors))
     page.chart(
         SCALED,
         [
             trace(
                 "public rotors",
                 [2.0 * one.tip_radius for one in rotors],
-                cube,
+                per_cube(rotors),
                 points=True,
                 text=[one.name for one in rotors],
             )
@@ -325,6 +289,45 @@ def show_thesis(page: Page, rotors: tuple[PublicRotor, ...], law: PowerLaw) -> N
         "diameter [m]",
         "torque over D^3 [N/m^2]",
     )
+
+
+def verdicts(rotors: tuple[PublicRotor, ...]) -> list[Record]:
+    """Printed rules, ours, verdicts, what is missing."""
+    over, cube = over_blades(rotors), per_cube(rotors)
+    mass = [formula_mass(one.length) / one.blade_mass for one in rotors]
+    factor = (DIAMETERS[1] / DIAMETERS[0]) ** 3
+    fit = power_law(
+        np.array([2.0 * one.tip_radius for one in rotors]), np.array([one.torque for one in rotors])
+    )
+    return [
+        statement(
+            "Eq 4.1: M = 2.95 L^2.13",
+            f"{min(mass):.2f} to {max(mass):.2f} of the public blades' mass",
+            "holds within 30 %" if max(mass) < 1.3 and min(mass) > 0.77 else "does not hold",
+            "nothing",
+        ),
+        statement(
+            "Eq 4.2: J = 0.212 M L^2 n",
+            f"J / (M L^2) is {min(coefficients(rotors)):.3f} to "
+            f"{max(coefficients(rotors)):.3f}; with Eq 4.1 {min(over):.2f} to {max(over):.2f} "
+            "of the public rotors' blades",
+            "too large for every rotor" if min(over) > 1.0 else "holds in part",
+            "mass along the blade; length and hub of A to D are not printed",
+        ),
+        statement(
+            "Eq 4.40: T1 / T2 = (D1 / D2)^3",
+            f"public rotors: torque over D^3 within a factor of {max(cube) / min(cube):.2f}, "
+            f"exponent {fit.exponent:.2f}",
+            "holds for equal tip speed and power over area alone",
+            f"diameters of A and B; with the V90's the factor is {factor:.3f}",
+        ),
+        statement(
+            "A and B run about rated torque under the scaled history of C",
+            f"mean torque {scaled_mean('A'):.2f} of rated for A, {scaled_mean('B'):.2f} for B",
+            "does not hold" if max(scaled_mean(k) for k in "AB") < 0.95 else "holds",
+            f"diameters; {PEAK} of rated of B is {PEAK / scaled_mean('B'):.2f} of the mean",
+        ),
+    ]
 
 
 def statement(printed: str, ours: str, verdict: str, missing: str) -> Record:

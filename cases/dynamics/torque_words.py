@@ -41,6 +41,7 @@ HSS_NORMAL, HSS_SHUTDOWN = 3.8e3, 19e3
 """Largest ranges of the measured torque of the high-speed shaft (chapter 3) [N m]."""
 MODULES = (0.014, 0.018)
 """Modules of the planetary stage that its torque allows [m]; the library's guess is between."""
+GUESS = f"module of the sun, {1e3 * MODULES[0]:g} to {1e3 * MODULES[1]:g} mm: "
 NEAR = 0.1
 """Share of a natural frequency within which a dominant frequency is near it."""
 
@@ -334,22 +335,17 @@ def history(found: Chapter) -> Sequence[Record]:
 
 
 def meshes(found: Chapter) -> Sequence[Record]:
-    """Mesh forces of C, and their ranges in the shutdowns."""
+    """Mesh forces of C in operation and in the shutdown, and ranges of A, B and C."""
     rated = mesh_force(found.c.one)
+    return [*in_normal(found, rated), *in_shutdown(found, rated), *ranges(found, rated)]
+
+
+def in_normal(found: Chapter, rated: float) -> Sequence[Record]:
+    """Mesh force of C in normal operation; `rated` is that at rated torque [N]."""
     low, high = (mesh_force(found.c.one, module) for module in reversed(MODULES))
-    normal, stop = found.c.spread(found.usual), found.stops["C"]
-    ratios = found.ratios()
+    normal = found.c.spread(found.usual)
     by_slip = [found.c.spread(name)[LEAST].least for name in found.c.runs]
     winds = [each for pair in found.winds.values() for each in pair]
-    least = {name: one.least_mean() for name, one in found.guesses.items()}
-    lows = {name: float(one.force.min()) for name, one in found.guesses.items()}
-    first = next(iter(found.guesses))
-    # forces that the printed ranges of the high-speed shaft give, one planet's sun mesh
-    radii = [
-        torque * ratio_of_table(found.c.one) / (sun_turns() * force)
-        for torque, force in ((HSS_NORMAL, NORMAL), (HSS_SHUTDOWN, SHUTDOWN))
-    ]
-    guess = f"module of the sun, {1e3 * MODULES[0]:g} to {1e3 * MODULES[1]:g} mm: "
     return [
         row(
             "6.15",
@@ -364,16 +360,27 @@ def meshes(found: Chapter) -> Sequence[Record]:
             f"{normal[MESH].mean * rated / 1e3:.0f} kN ({normal[MESH].least * rated / 1e3:.0f} to "
             f"{normal[MESH].largest * rated / 1e3:.0f} by seed)",
             "not testable: neither torque nor module is printed",
-            f"{guess}{normal[MESH].mean * low / 1e3:.0f} to "
+            f"{GUESS}{normal[MESH].mean * low / 1e3:.0f} to "
             f"{normal[MESH].mean * high / 1e3:.0f} kN; wind and the turbine's generator: "
             f"{min(winds) * rated / 1e3:.0f} to {max(winds) * rated / 1e3:.0f} kN",
         ),
+    ]
+
+
+def in_shutdown(found: Chapter, rated: float) -> Sequence[Record]:
+    """Mesh force of C in the shutdown; `rated` as for `in_normal`."""
+    low, high = (mesh_force(found.c.one, module) for module in reversed(MODULES))
+    stop = found.stops["C"]
+    least = {name: one.least_mean() for name, one in found.guesses.items()}
+    lows = {name: float(one.force.min()) for name, one in found.guesses.items()}
+    first = next(iter(found.guesses))
+    return [
         row(
             "6.16",
             f"range above {SHUTDOWN / 1e3:g} kN in the shutdown",
             f"{stop.range * rated / 1e3:.0f} kN",
             "holds" if stop.range * rated > SHUTDOWN else "does not hold",
-            f"{guess}{stop.range * low / 1e3:.0f} to {stop.range * high / 1e3:.0f} kN; by instant "
+            f"{GUESS}{stop.range * low / 1e3:.0f} to {stop.range * high / 1e3:.0f} kN; by instant "
             "of the brake and damping "
             f"{min(one.range for one in found.guesses.values()) * rated / 1e3:.0f} to "
             f"{max(one.range for one in found.guesses.values()) * rated / 1e3:.0f} kN",
@@ -388,6 +395,18 @@ def meshes(found: Chapter) -> Sequence[Record]:
             f"{min(least.values()) * rated / 1e3:.0f} to "
             f"{max(least.values()) * rated / 1e3:.0f} kN",
         ),
+    ]
+
+
+def ranges(found: Chapter, rated: float) -> Sequence[Record]:
+    """Ranges in the shutdown over those in operation, and where the printed ones come from."""
+    ratios, stop = found.ratios(), found.stops["C"]
+    # forces that the printed ranges of the high-speed shaft give, one planet's sun mesh
+    radii = [
+        torque * ratio_of_table(found.c.one) / (sun_turns() * force)
+        for torque, force in ((HSS_NORMAL, NORMAL), (HSS_SHUTDOWN, SHUTDOWN))
+    ]
+    return [
         row(
             "6.15, 6.3",
             "ranges of mesh forces of A, B and C are 5 to 6 times as large in the shutdown",
@@ -402,7 +421,8 @@ def meshes(found: Chapter) -> Sequence[Record]:
             f"{NORMAL / 1e3:g} and {SHUTDOWN / 1e3:g} kN are results of the model",
             f"the measured ranges of the high-speed shaft, {HSS_NORMAL / 1e3:g} and "
             f"{HSS_SHUTDOWN / 1e3:g} kN m, give both with a base radius of {radii[0]:.4f} and "
-            f"{radii[1]:.4f} m of the sun; a module of 16 mm has {base_radius():.4f} m",
+            f"{radii[1]:.4f} m of the sun; a module of "
+            f"{1e3 * first_stage().module:g} mm has {base_radius():.4f} m",
             "they are the measured torque by statics: no swing of the model is in them"
             if abs(radii[0] / radii[1] - 1.0) < 0.01
             else "they are not the measured torque by statics",

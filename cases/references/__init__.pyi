@@ -21,7 +21,6 @@ from . import mathieu as mathieu
 from . import one_norm as one_norm
 from . import park_2021 as park_2021
 from . import plane_rings as plane_rings
-from . import public_rotors as public_rotors
 from . import published_campaigns as published_campaigns
 from . import published_drivetrains as published_drivetrains
 from . import published_gears as published_gears

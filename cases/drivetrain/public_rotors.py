@@ -92,7 +92,7 @@ class PublicRotor(NamedTuple):
 @cache
 def public_rotors() -> tuple[PublicRotor, ...]:
     """All of the table, by size."""
-    text = (files("fe_drivetrain.cases.references") / "public_rotors.yaml").read_text("utf-8")
+    text = (files("fe_drivetrain.cases.drivetrain") / "public_rotors.yaml").read_text("utf-8")
     rows = yaml.safe_load(text)
     return tuple(
         PublicRotor(name, **{**row, "density": np.array(row["density"])})
