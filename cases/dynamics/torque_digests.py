@@ -180,30 +180,53 @@ def operated(
 
 WINDS = {
     "16 m/s, medium turbulence": (WIND, TURBULENCE),
-    "16 m/s, high turbulence": (WIND, "high"),
     "12 m/s, medium turbulence": (12.0, "medium"),
+    "16 m/s, high turbulence": (WIND, "high"),
     "12 m/s, high turbulence": (12.0, "high"),
 }
 
 
-def ranges_by_wind(one: Rated, line: Generator, dt: float) -> dict[str, tuple[float, float]]:
-    """Range in 20 s of the rotor's shaft over rated, by wind: behind a converter, on the grid.
+class ByWind(NamedTuple):
+    """What one wind does, the first seed.
+
+    Attributes
+    ----------
+    converter, direct : float
+        Range of C's low-speed shaft in 20 s over rated, its generator behind a converter and on
+        the grid.
+    twice : float
+        Swing of D's fast shaft with the shaft's torque on the rotor, over the true one.
+    """
+
+    converter: float
+    direct: float
+    twice: float
+
+
+def by_wind(
+    c: Rated, d: Rated, lines: tuple[Generator, Generator], dt: float, count: int
+) -> dict[str, ByWind]:
+    """What winds do that are not those of the case.
 
     Parameters
     ----------
-    one : Rated
-        The drivetrain.
-    line : Generator
-        The generator on the grid.
+    c, d : Rated
+        Drivetrains C and D.
+    lines : tuple of Generator
+        Generator of C on the grid, and of D.
     dt : float
         Step [s].
+    count : int
+        How many of `WINDS`, from the first.
     """
     found = {}
-    for name, wind in WINDS.items():
-        air = air_on(one, 1, *wind)
-        runs = (measured(one, air, dt, held) for held in (None, line))
-        behind, direct = (window_range(run.torque(one.slow)[run.late], dt) for run in runs)
-        found[name] = (behind, direct)
+    for name, wind in list(WINDS.items())[:count]:
+        air = air_on(c, 1, *wind)
+        runs = (measured(c, air, dt, held) for held in (None, lines[0]))
+        behind, direct = (window_range(run.torque(c.slow)[run.late], dt) for run in runs)
+        true = measured(d, air_on(d, 1, *wind), dt, lines[1])
+        again = driven(d, true.motion.times, true.torque(d.slow), lines[1], dt)
+        found[name] = ByWind(behind, direct, beside_gauge(again, true)[SWING_RATIO])
     return found
 
 

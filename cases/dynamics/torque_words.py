@@ -19,6 +19,7 @@ from fe_drivetrain.cases.dynamics.torque_digests import (
     POWER_SWING,
     SWING_RATIO,
     TORQUE,
+    ByWind,
     Cycled,
     Operated,
     Wave,
@@ -60,7 +61,7 @@ class Chapter(NamedTuple):
     guesses : dict
         Those of C by what is not printed.
     winds : dict
-        Ranges of C's shaft in operation by wind, behind a converter and on the grid.
+        What winds do that are not those of the case.
     spring, slip, usual : str
         Names of the generators: on a spring, on the printed slip, and as in other cases.
     """
@@ -70,7 +71,7 @@ class Chapter(NamedTuple):
     others: list[Operated]
     stops: dict[str, Cycled]
     guesses: dict[str, Cycled]
-    winds: dict[str, tuple[float, float]]
+    winds: dict[str, ByWind]
     spring: str
     slip: str
     usual: str
@@ -163,7 +164,7 @@ def answer(page: Page, found: Chapter, hero: str) -> None:
         hero,
         [
             "The measured torque is not public: histories are those of a similar turbine in "
-            "turbulent wind, and scatter by seed.",
+            "turbulent wind; ± is half of their scatter by seed.",
             "Controls of the generators and instants of the brake are not printed; tables show "
             "what each guess moves.",
         ],
@@ -345,7 +346,7 @@ def in_normal(found: Chapter, rated: float) -> Sequence[Record]:
     low, high = (mesh_force(found.c.one, module) for module in reversed(MODULES))
     normal = found.c.spread(found.usual)
     by_slip = [found.c.spread(name)[LEAST].least for name in found.c.runs]
-    winds = [each for pair in found.winds.values() for each in pair]
+    winds = [each for one in found.winds.values() for each in (one.converter, one.direct)]
     return [
         row(
             "6.15",
