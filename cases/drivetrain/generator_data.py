@@ -69,7 +69,7 @@ class Printed(NamedTuple):
     @property
     def current(self) -> float:
         """Current of a phase at rated power and a power factor of 1 [A]."""
-        return self.power / (np.sqrt(3.0) * VOLTS)
+        return float(self.power / (np.sqrt(3.0) * VOLTS))
 
     @property
     def torque(self) -> float:

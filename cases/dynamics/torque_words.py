@@ -108,7 +108,7 @@ def mesh_force(one: Rated, module: float | None = None) -> float:
 def sun_turns() -> float:
     """Torque of C's rotor over that of one sun mesh: ratio of the stage times its planets."""
     stage = first_stage()
-    return (1.0 + stage.teeth.ring / stage.teeth.sun) * stage.planets
+    return float((1.0 + stage.teeth.ring / stage.teeth.sun) * stage.planets)
 
 
 def first_stage() -> Any:
