@@ -259,7 +259,7 @@ def show_springs(page: Page, d: Printed) -> None:
         "frequency [Hz]",
         ("x", "y"),
     )
-    lines = {name: d.stiffness(x) for name, x in d.guesses().items()}
+    lines = {name: d.stiffness(x) for name, x in d.guesses().items() if "twice" not in name}
     page.add(mark_events(drawn, {**lines, "printed": PRINTED}))
     page.text(
         "A generator behind a converter, as A's and as the rotor circuits of B, C and D, has no "

@@ -124,6 +124,8 @@ def answer(page: Page, rotors: tuple[PublicRotor, ...], law: PowerLaw) -> None:
     """State how far both rules of the thesis are from public rotors."""
     over, cube = over_blades(rotors), per_cube(rotors)
     wrong = min(over) > 1.1
+    lengths = [one.length for one in rotors]
+    implied = [implied_length(published.table(name).rotor) for name, *_ in published.RATED.values()]
     page.answer(
         "How good are the thesis's rules for a rotor's inertia and for torque by diameter?",
         f"Eq 4.2 {'does not hold' if wrong else 'holds in part'}: it gives "
@@ -152,8 +154,8 @@ def answer(page: Page, rotors: tuple[PublicRotor, ...], law: PowerLaw) -> None:
         ],
         BY_LENGTH,
         [
-            "Public rotors are of 33 to 138 m blades: of those of the thesis, 24 to 38 m, one has "
-            "that size.",
+            f"Public rotors have blades of {min(lengths):.0f} to {max(lengths):.0f} m, those of "
+            f"the thesis {min(implied):.0f} to {max(implied):.0f} m by its formula.",
             "Rated torque of two turbines is their power over efficiency and speed.",
         ],
         claim="does not hold" if wrong else "holds in part",
