@@ -26,10 +26,6 @@ from fe_drivetrain.report.suite.chosen import SETTING
 BY_LENGTH = "Inertia of a rotor by the length of its blades: public rotors, formula, power law"
 SCALED = "Rated torque over the cube of the diameter"
 BLADE = "blade"
-DIAMETERS = (80.0, 90.0)
-"""Of drivetrain C (Table 3.1), and of the V90 that the thesis cites for 3 MW [m]."""
-C_SPEED = 18.1
-"""Rated speed of C's rotor (Table 3.1) [1/min]."""
 PEAK = 1.26
 """Largest torque of B over rated in normal operation."""
 
@@ -147,7 +143,7 @@ def answer(page: Page, rotors: tuple[PublicRotor, ...], law: PowerLaw) -> None:
             page.value("scatter of a power law of public rotors [%]", 100.0 * law.scatter),
             page.value(
                 "mean torque of B's record over its rated torque",
-                scaled_mean("B"),
+                published.scaled_mean("B"),
                 beside=1.0,
                 by="rated",
             ),
@@ -252,15 +248,6 @@ def show_lengths(page: Page, rotors: tuple[PublicRotor, ...], law: PowerLaw) -> 
     )
 
 
-def scaled_mean(letter: str) -> float:
-    """Mean torque of A's or B's record, C's rated one by Eq 4.40, over rated torque (Table 4.1)."""
-    _, power, speed = published.RATED[letter]
-    rated = power / (speed * np.pi / 30.0)
-    _, power_c, _ = published.RATED["C"]
-    scaled = power_c / (C_SPEED * np.pi / 30.0) * (DIAMETERS[1] / DIAMETERS[0]) ** 3
-    return float(scaled / rated)
-
-
 def show_thesis(page: Page, rotors: tuple[PublicRotor, ...], law: PowerLaw) -> None:
     """The thesis's own rotors by both, and its statements with verdicts."""
     page.section("Rotors of the thesis")
@@ -295,9 +282,10 @@ def show_thesis(page: Page, rotors: tuple[PublicRotor, ...], law: PowerLaw) -> N
 
 def verdicts(rotors: tuple[PublicRotor, ...]) -> list[Record]:
     """Printed rules, ours, verdicts, what is missing."""
+    means = {letter: published.scaled_mean(letter) for letter in "AB"}
     over, cube = over_blades(rotors), per_cube(rotors)
     mass = [formula_mass(one.length) / one.blade_mass for one in rotors]
-    factor = (DIAMETERS[1] / DIAMETERS[0]) ** 3
+    factor = (published.DIAMETERS[1] / published.DIAMETERS[0]) ** 3
     fit = power_law(
         np.array([2.0 * one.tip_radius for one in rotors]), np.array([one.torque for one in rotors])
     )
@@ -325,9 +313,9 @@ def verdicts(rotors: tuple[PublicRotor, ...]) -> list[Record]:
         ),
         statement(
             "A and B run about rated torque under the scaled history of C",
-            f"mean torque {scaled_mean('A'):.2f} of rated for A, {scaled_mean('B'):.2f} for B",
-            "does not hold" if max(scaled_mean(k) for k in "AB") < 0.95 else "holds",
-            f"diameters; {PEAK} of rated of B is {PEAK / scaled_mean('B'):.2f} of the mean",
+            f"mean torque {means['A']:.2f} of rated for A, {means['B']:.2f} for B",
+            "does not hold" if max(means.values()) < 0.95 else "holds",
+            f"diameters; {PEAK} of rated of B is {PEAK / means['B']:.2f} of the mean",
         ),
     ]
 

@@ -26,6 +26,7 @@ from fe_drivetrain.cases.dynamics.torque_digests import (
     first_wave,
     free_mode,
 )
+from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.dynamics import library_machine
 from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import Page, Record
@@ -36,6 +37,8 @@ LOW_SWUNG, HIGH_SWUNG = 0.8, 5.0
 """Oscillation of the slow shaft, and what the fast one goes up and down by [1/min]."""
 PEAK = 0.84
 """Dominant frequency of the high-speed shaft's torque of D in normal operation [Hz]."""
+MOST = 1.26
+"""Largest torque of B over rated in normal operation."""
 NORMAL, SHUTDOWN, NEGATIVE = 88e3, 440e3, -100e3
 """Ranges of the sun-planet force of C, and its negative mean in the shutdown [N]."""
 HSS_NORMAL, HSS_SHUTDOWN = 3.8e3, 19e3
@@ -218,7 +221,7 @@ def own_answer(page: Page, found: Operated, stop: Cycled, hero: str) -> None:
 def show_verdicts(page: Page, found: Chapter) -> None:
     """Show each printed statement beside ours, with what is missing and what guesses move."""
     page.section("Printed, ours, verdict")
-    rows = [*speeds(found), *spectra(found), *history(found), *meshes(found)]
+    rows = [*speeds(found), *spectra(found), *history(found), largest(found), *meshes(found)]
     page.table("Statements of chapter 6 on normal operation", rows)
     page.data("statements of chapter 6", rows)
 
@@ -333,6 +336,26 @@ def history(found: Chapter) -> Sequence[Record]:
             "measured torque of both shafts, and the generator's control",
         )
     ]
+
+
+def largest(found: Chapter) -> Record:
+    """The largest torque of B in normal operation."""
+    b = found.others[1]
+    most = max(float(run.torque(run.one.fast)[run.late].max()) for run in b.runs[found.usual])
+    scaled = most * published.scaled_mean("B")
+    # torque goes with the cube of the diameter
+    asked = published.DIAMETERS[1] * (MOST / scaled) ** (1.0 / 3.0)
+    return row(
+        "6.17",
+        f"largest torque of B over rated is {MOST:g} in normal operation, the history of C scaled "
+        "by D^3",
+        f"{most:.2f} about rated torque; scaled to the V90's {published.DIAMETERS[1]:g} m "
+        f"{scaled:.2f}",
+        "not reached with that diameter in such a wind"
+        if scaled < (1.0 - NEAR) * MOST
+        else "holds",
+        f"diameter of B, for which {asked:.0f} m would be needed, and the measured torque",
+    )
 
 
 def meshes(found: Chapter) -> Sequence[Record]:
