@@ -5,9 +5,16 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.cases.references import published_drivetrains as published
+from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import Drivetrain
-from fe_drivetrain.dynamics import gear_table
-from fe_drivetrain.dynamics.torsion import GearTable
+from fe_drivetrain.dynamics import damped_by_ratio, gear_table, torsional_equations, wind_up
+from fe_drivetrain.dynamics.torsion import (
+    GearTable,
+    Torsional,
+    changed,
+    gear_masses,
+    natural_modes,
+)
 from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.report.suite.chosen import SETTING
 
@@ -67,7 +74,7 @@ def drivetrains() -> list[Rated]:
     ]
 
 
-def own_or_published(run: Run, page: Page, topic: str = "") -> list[Rated]:
+def own_or_published(run: Run, page: Page, topic: str = "", gears: bool = False) -> list[Rated]:
     """The drivetrain that the user names, or A to D; a page of the former says that it is.
 
     Parameters
@@ -76,6 +83,8 @@ def own_or_published(run: Run, page: Page, topic: str = "") -> list[Rated]:
         Those of the case.
     topic : str
         What is asked of a user's drivetrain, see `ChosenDrivetrain.state`.
+    gears : bool
+        Whether the case is about gears, so that a direct drive is refused.
 
     Raises
     ------
@@ -84,7 +93,7 @@ def own_or_published(run: Run, page: Page, topic: str = "") -> list[Rated]:
     """
     if SETTING not in run.settings:
         return drivetrains()
-    chosen = run.drivetrain("")
+    chosen = run.drivetrain("", gears)
     chosen.state(page, topic=topic)
     table = gear_table(chosen.drivetrain)
     torque, speed = chosen.rated_torque(), chosen.rotor_speeds()[1]
@@ -117,3 +126,33 @@ def brake_over_rated(drivetrain: Drivetrain, table: GearTable, torque: float) ->
     # over the rated torque of its own shaft, which is the same share at the generator's
     speeds = dict(zip((shaft.name for shaft in table.shafts), table.speeds, strict=True))
     return brake.torque * speeds[brake.shaft] / torque
+
+
+def damped_masses(one: Rated) -> Torsional:
+    """Every gear a mass, with the dampers of the table or by damping ratios."""
+    system = gear_masses(one.table, "free")
+    if one.ratios is None:
+        return system
+    shafts = {shaft.name for shaft in one.table.shafts}
+    ratios = {e.name: one.ratios[e.name not in shafts] for e in system.elements}
+    return damped_by_ratio(system, ratios)
+
+
+def first_held(one: Rated) -> float:
+    """First mode with the generator held [Hz]."""
+    held = {"generator": 1e9 * one.table.generator.inertia}
+    modes = natural_modes(changed(gear_masses(one.table, "free"), held))
+    return float(modes.frequencies[1])
+
+
+def unit(system: Torsional, name: str) -> Floats:
+    """Torque of 1 on a mass."""
+    load = np.zeros(len(system.J))
+    load[system.place(name)] = 1.0
+    return load
+
+
+def mean_torques(system: Torsional, generator: float) -> Floats:
+    """Mean torque of each element at a torque of 1 on the rotor [N m]."""
+    load = unit(system, "rotor") - unit(system, "generator") / generator
+    return np.asarray(system.k * (system.B @ wind_up(torsional_equations(system), load).q))

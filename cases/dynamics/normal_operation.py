@@ -3,7 +3,14 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.drivetrains import Rated, own_or_published
+from fe_drivetrain.cases.dynamics.drivetrains import (
+    Rated,
+    damped_masses,
+    first_held,
+    mean_torques,
+    own_or_published,
+    unit,
+)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import InTime, converge_in_time
 from fe_drivetrain.dynamics import (
@@ -11,7 +18,6 @@ from fe_drivetrain.dynamics import (
     Loads,
     Motion,
     State,
-    damped_by_ratio,
     integrate,
     joined_laws,
     slip_line,
@@ -23,10 +29,7 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.dynamics.torsion import (
     Torsional,
-    changed,
-    gear_masses,
     gear_speeds,
-    natural_modes,
 )
 from fe_drivetrain.report import Cell, chart, mark_events, trace
 from fe_drivetrain.report.number_text import percent_text, value_text
@@ -194,16 +197,6 @@ def show_response(page: Page, trains: list[Rated], count: int) -> None:
     page.add(mark_events(drawn, {f"{order}P": float(order) for order in ORDERS}))
 
 
-def damped_masses(one: Rated) -> Torsional:
-    """Every gear a mass, with the dampers of the table or by damping ratios."""
-    system = gear_masses(one.table, "free")
-    if one.ratios is None:
-        return system
-    shafts = {shaft.name for shaft in one.table.shafts}
-    ratios = {e.name: one.ratios[e.name not in shafts] for e in system.elements}
-    return damped_by_ratio(system, ratios)
-
-
 def verdicts(apart: float, least: float, largest: float) -> list[list[Cell]]:
     """Printed statements on drivetrain B beside ours.
 
@@ -283,20 +276,6 @@ def rows_of(page: Page, one: Rated, dt: float) -> list[Record]:
     return rows
 
 
-def first_held(one: Rated) -> float:
-    """First mode with the generator held [Hz]."""
-    held = {"generator": 1e9 * one.table.generator.inertia}
-    modes = natural_modes(changed(gear_masses(one.table, "free"), held))
-    return float(modes.frequencies[1])
-
-
-def unit(system: Torsional, name: str) -> Floats:
-    """Torque of 1 on a mass."""
-    load = np.zeros(len(system.J))
-    load[system.place(name)] = 1.0
-    return load
-
-
 def steepness(one: Rated, generator: float) -> float:
     """Steepness of the generator's line [N m s/rad]."""
     return one.torque / (SLIP * one.speed * generator**2)
@@ -311,12 +290,6 @@ def amplified(system: Torsional, one: Rated, generator: float, w: float) -> Floa
     A = system.B.T @ (spring[:, None] * system.B) - w**2 * np.diag(system.J) + line
     swing = spring * (system.B @ np.linalg.solve(A, unit(system, "rotor").astype(complex)))
     return np.asarray(np.abs(swing / mean_torques(system, generator)), dtype=np.float64)
-
-
-def mean_torques(system: Torsional, generator: float) -> Floats:
-    """Mean torque of each element at a torque of 1 on the rotor [N m]."""
-    load = unit(system, "rotor") - unit(system, "generator") / generator
-    return np.asarray(system.k * (system.B @ wind_up(torsional_equations(system), load).q))
 
 
 def swinging(system: Torsional, one: Rated, generator: float, w: float, dt: float) -> Motion:

@@ -238,3 +238,24 @@ def observable(modes: Modes, least: float = 1e-9) -> Ints:
     planets = [i for i, name in enumerate(modes.names) if "planet" in name]
     others = np.delete(modes.inertia_shares, planets, axis=0).sum(axis=0)
     return np.flatnonzero(others > least)
+
+
+#: Diameters of C (Table 3.1) and of the V90, which the thesis cites for 3 MW [m], and C's rated
+#: speed of Table 3.1 [rpm].
+DIAMETERS, C_SPEED = (80.0, 90.0), 18.1
+
+
+def scaled_mean(letter: str, diameter: float = DIAMETERS[1]) -> float:
+    """Rated torque of C, scaled by Eq 4.40 to another rotor, over the rated torque of that one.
+
+    Parameters
+    ----------
+    letter : str
+        "A" or "B", whose rated torque is that of Table 4.1.
+    diameter : float
+        Diameter of the other rotor [m].
+    """
+    _, power, speed = RATED[letter]
+    rated = power / (speed * np.pi / 30.0)
+    scaled = RATED["C"][1] / (C_SPEED * np.pi / 30.0) * (diameter / DIAMETERS[0]) ** 3
+    return float(scaled / rated)

@@ -332,6 +332,7 @@ OF_NO_OTHER = {
         ),
         "of what a thesis prints of its drivetrain: values and sentences are held to its data": (
             "drivetrain/drivetrains_a_b_c",
+            "drivetrain/generator_data",
         ),
         "of the pair of gears of a standard's example, whose printed stiffness it recomputes; "
         "gear/nrel_750kw does so with a user's": ("gear/iso_example",),
@@ -399,6 +400,8 @@ PRINTED_NAMES = (
         "dynamics/campbell_table",
         "dynamics/hss_stiffness",
         "dynamics/normal_operation",
+        "dynamics/round_robin",
+        "dynamics/torque_histories",
         "dynamics/two_mass_transients",
         "procedure/campaign",
         "procedure/identification",
