@@ -11,6 +11,7 @@ import typer
 from fe_drivetrain.command_line.answer_text import answer_text, write_json
 from fe_drivetrain.command_line.option_names import result_with_options
 from fe_drivetrain.command_line.output_options import wants_json
+from fe_drivetrain.command_line.progress import show_steps
 from fe_drivetrain.command_line.terminal import PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
 
@@ -97,16 +98,18 @@ def part_command(
             )
         if picture is not None:
             _check_picture(picture, overwrite)
-        result = part(
-            file,
-            bore,
-            [name for name in held.split(",") if name],
-            points=point or (),
-            stiffness_name=stiffness,
-            mass_name=mass,
-            grids=grids,
-            units=units,
-        )
+        with show_steps() as report:
+            result = part(
+                file,
+                bore,
+                [name for name in held.split(",") if name],
+                points=point or (),
+                stiffness_name=stiffness,
+                mass_name=mass,
+                grids=grids,
+                units=units,
+                report=report,
+            )
         drawn = result.survey is not None and picture is not None and _draw(result.survey, picture)
         if wants_json():
             write_json(result_with_options(result).to_dict())

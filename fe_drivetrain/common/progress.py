@@ -1,5 +1,7 @@
 """How far a piece of work is, reported to whatever shows it."""
 
+from collections.abc import Callable
+from contextvars import ContextVar
 from typing import Protocol
 
 OVERALL = -1
@@ -18,3 +20,11 @@ class Progress(Protocol):
 
 def silent(step: str, lane: int = 0) -> None:
     """Show nothing."""
+
+
+def _no_details(detail: str) -> None:
+    """Show nothing."""
+
+
+DETAILS: ContextVar[Callable[[str], None]] = ContextVar("details", default=_no_details)
+"""Shows how far the step is that runs now, for work that is many calls below it."""

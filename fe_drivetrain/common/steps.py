@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import ParamSpec, TypeVar
 
-from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.progress import DETAILS, Progress, silent
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -41,7 +41,11 @@ class Clock:
         self.report(name)
         step = Step(name)
         start = time.perf_counter()
-        yield step
+        before = DETAILS.set(lambda detail: self.report(f"{name}: {detail}"))
+        try:
+            yield step
+        finally:
+            DETAILS.reset(before)
         self.add_time(step.name, time.perf_counter() - start)
 
     def timed(

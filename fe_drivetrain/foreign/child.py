@@ -20,7 +20,10 @@ def main(request_file: str, result_file: str) -> int:
     request = json.loads(Path(request_file).read_text())
     _limit(request["limits"])
     from fe_drivetrain.common.errors import InputError
+    from fe_drivetrain.foreign.reading import told_file
+    from fe_drivetrain.foreign.telling import tell_to
 
+    tell_to(told_file(result_file))
     try:
         arrays = _action(request["action"])(request)
         np.savez(result_file, **arrays)

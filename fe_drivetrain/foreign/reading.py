@@ -11,7 +11,9 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,6 +23,7 @@ from numpy.typing import NDArray
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import scratch_folder
+from fe_drivetrain.common.progress import DETAILS
 from fe_drivetrain.common.reading import why_unreadable
 from fe_drivetrain.common.regular_files import MAX_BYTES, require_regular
 from fe_drivetrain.common.threads import thread_limits
@@ -51,6 +54,8 @@ class Limits:
 
 
 LIMITS = Limits()
+
+_LOOK = 0.2  # seconds between looks at how far the process is
 
 
 def read_in_process(
@@ -90,19 +95,15 @@ def read_in_process(
         environment = {**os.environ, **thread_limits(1), "PYTHONSAFEPATH": "1"}
         command = [sys.executable, "-m", "fe_drivetrain.foreign.child", str(asked), str(result)]
         with (folder / "printed").open("w+b") as printed:
-            try:
-                status = subprocess.run(
-                    command,
-                    cwd=folder,
-                    env=environment,
-                    stdin=subprocess.DEVNULL,
-                    stdout=printed,
-                    stderr=printed,
-                    timeout=2 * limits.seconds,
-                    check=False,
-                ).returncode
-            except subprocess.TimeoutExpired:
-                status = -int(getattr(signal, "SIGXCPU", 24))
+            process = subprocess.Popen(
+                command,
+                cwd=folder,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=printed,
+                stderr=printed,
+            )
+            status = _watched(process, told_file(result), 2.0 * limits.seconds)
         if status == 0:
             with np.load(result, allow_pickle=False) as archive:
                 return {name: archive[name] for name in archive.files}
@@ -110,6 +111,39 @@ def read_in_process(
         if status == 3 and sentence.exists() and (text := sentence.read_text()) != "MEMORY":
             raise InputError(text)
     raise InputError(_ended(file, status, limits))
+
+
+def told_file(result: str | Path) -> Path:
+    """File beside a result to which the process writes how far it is, a line for each step."""
+    return Path(result).with_suffix(".steps")
+
+
+def _watched(process: subprocess.Popen[bytes], told: Path, seconds: float) -> int:
+    """Exit status of a process, of which each step is shown as it begins; it ends with this one."""
+    show, shown, end = DETAILS.get(), 0, time.monotonic() + seconds
+    try:
+        while True:
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(_LOOK)
+            shown = _show_told(told, shown, show)
+            if process.returncode is not None:
+                return process.returncode
+            if time.monotonic() > end:
+                return -int(getattr(signal, "SIGXCPU", 24))
+    finally:
+        if process.poll() is None:
+            process.kill()
+            process.wait()
+
+
+def _show_told(told: Path, shown: int, show: Callable[[str], None]) -> int:
+    """Show the last step that a process has told of after as many; how many there are now."""
+    if not told.exists():
+        return shown
+    steps = told.read_text("utf-8").split("\n")[:-1]
+    if len(steps) > shown:
+        show(steps[-1])
+    return len(steps)
 
 
 def _check_file(file: Path, limits: Limits) -> None:

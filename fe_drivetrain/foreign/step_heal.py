@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
 from typing import Any, NamedTuple
 
@@ -20,6 +20,7 @@ import gmsh
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.step_fit import area_and_middle
+from fe_drivetrain.foreign.telling import tell
 
 VOLUME_TOLERANCE = 1e-4
 """Relative change of a volume by healing that is refused."""
@@ -27,6 +28,8 @@ VOLUME_TOLERANCE = 1e-4
 _SAME = 1e-6  # of a solid's size: edges and gaps that are nothing
 _COARSE, _FINE, _PER_TURN = 25, 500, 16  # of its size, and elements of a turn: to see if it meshes
 _FINER = 2.5
+_TIMES = 3  # that faces which gmsh names get smaller elements
+_MANY = 50_000  # triangles of a coarse mesh: a finer one, or many of them, take minutes
 _DELAUNAY, _HXT = 1, 10  # gmsh's numbers: HXT is ten times as fast, Delaunay says what is wrong
 
 
@@ -129,13 +132,15 @@ def free_edges(faces: list[int]) -> str:
 
 
 def surface_mesh(finer: float = 1.0) -> None:
-    """Mesh all faces coarsely, for a picture or to see whether gmsh can.
+    """Mesh all faces coarsely, for a picture or to see whether gmsh can, if they are not meshed.
 
     Parameters
     ----------
     finer : float
         Factor by which elements are smaller.
     """
+    if any(map(len, gmsh.model.mesh.getElements(2)[1])):
+        return
     size = size_of_all() / finer
     gmsh.option.setNumber("Mesh.MeshSizeMax", size / _COARSE)
     gmsh.option.setNumber("Mesh.MeshSizeMin", size / _FINE)
@@ -144,23 +149,48 @@ def surface_mesh(finer: float = 1.0) -> None:
 
 
 def _unmeshed() -> str:
-    """Why gmsh cannot mesh the solids; chords of coarse elements may cross: a finer mesh, too."""
-    words = ""
+    """Why gmsh cannot mesh the solids.
+
+    Chords of coarse elements may cross: faces that gmsh names get smaller ones, and last all do.
+    """
     # after an error that is raised, gmsh meshes nothing any more, and says nothing
     raised = gmsh.option.getNumber("General.AbortOnError")
     gmsh.option.setNumber("General.AbortOnError", 1)
+    refined: set[int] = set()
     try:
-        for finer in (1.0, _FINER):
-            words = _unmeshed_at(finer)
-            gmsh.model.mesh.clear()
-            if not words:
+        words = _unmeshed_at()
+        for _ in range(_TIMES):
+            new = set(_named(words)) - refined
+            if not new:
                 break
+            refined |= new
+            _refine(new)
+            words = _unmeshed_at()
+        if words and not _many():
+            gmsh.model.mesh.removeConstraints()
+            words = _unmeshed_at(_FINER)
     finally:
+        gmsh.model.mesh.removeConstraints()
         gmsh.option.setNumber("General.AbortOnError", raised)
     return words
 
 
-def _unmeshed_at(finer: float) -> str:
+def _many() -> bool:
+    """Whether the coarse mesh that is there has so many triangles that another takes long."""
+    return sum(map(len, gmsh.model.mesh.getElements(2)[1])) > _MANY
+
+
+def _refine(faces: Collection[int]) -> None:
+    """Divide the edges of faces into more elements than the mesh that is there has."""
+    edges = gmsh.model.getBoundary([(2, t) for t in faces], combined=False, oriented=False)
+    for _, edge in dict.fromkeys(edges):
+        _, elements, _ = gmsh.model.mesh.getElements(1, edge)
+        if number := sum(map(len, elements)):
+            gmsh.model.mesh.setTransfiniteCurve(edge, math.ceil(_FINER * number) + 1)
+
+
+def _unmeshed_at(finer: float = 1.0) -> str:
+    gmsh.model.mesh.clear()
     surface_mesh(finer)
     why = " ".join(gmsh.logger.getLastError().split())
     if not why:
@@ -172,9 +202,15 @@ def _unmeshed_at(finer: float) -> str:
 def _unfilled(mesher: int) -> str:
     """Why a mesher fills solids with no elements, in gmsh's words; nothing if it does."""
     gmsh.option.setNumber("Mesh.Algorithm3D", mesher)
-    gmsh.model.mesh.generate(3)
+    optimised = gmsh.option.getNumber("Mesh.Optimize")
+    gmsh.option.setNumber("Mesh.Optimize", 0)  # takes six times as long as all else
+    try:
+        gmsh.model.mesh.generate(3)
+    finally:
+        gmsh.option.setNumber("Mesh.Optimize", optimised)
     why = " ".join(gmsh.logger.getLastError().split())
     _, made, _ = gmsh.model.mesh.getElements(3)
+    gmsh.model.mesh.clear(gmsh.model.getEntities(3))
     return why or ("" if made else "it makes no elements")
 
 
@@ -190,6 +226,7 @@ def heal(
     read: Callable[[], None],
     smallest_detail: float,
     known: Mapping[str, Any] | None = None,
+    sound: bool = False,
 ) -> Healed:
     """Leave sound solids in the model: as they are read, or with the minimum healing that they
     need.
@@ -207,6 +244,8 @@ def heal(
     known : Mapping[str, Any] or None
         Values "words" and "step" of `Healed`, as found before for the same file: it is not tried
         again.
+    sound : bool
+        Whether what is in the model is known to be sound.
 
     Returns
     -------
@@ -222,12 +261,19 @@ def heal(
         step = known["step"]
         after = before if step is None else _tried(read, steps[step], smallest_detail)
         return Healed(after, known["words"], step)
-    wrong = fault()
+    tell(f"trying to mesh its {before['faces']:,} faces")
+    wrong = "" if sound else fault()
     if not wrong and not smallest_detail > 0:
         return Healed(before, "not healed: its shells are closed, and gmsh meshes them", None)
+    if "intersect" in wrong and _many():  # healing hardly ever mends it, and takes minutes here
+        raise InputError(
+            f"{name}: {wrong}, with smaller elements there, too: its faces cross, so repair it in "
+            "the CAD program"
+        )
     why = f"{wrong}; " if wrong else ""
     after, best = before, None
     for number, step in enumerate(steps):
+        tell(f"healing {before['faces']:,} faces, way {number + 1} of {len(steps)}")
         after = _tried(read, step, smallest_detail)
         if not _as_before(before, after):
             continue
@@ -258,6 +304,11 @@ def _tried(read: Callable[[], None], step: Step, smallest_detail: float) -> dict
     """Contents after one step, of the file as it was read."""
     gmsh.clear()
     read()
+    return _after(step, smallest_detail)
+
+
+def _after(step: Step, smallest_detail: float) -> dict[str, Any]:
+    """Contents after one step, of what is in the model."""
     occ, there = gmsh.model.occ, gmsh.model.getEntities(3)
     edges, faces = step.flags[1:3]
     tolerance = smallest_detail or _SAME * size_of_all()
@@ -290,12 +341,13 @@ def sewn(read: Callable[[], None], sound: bool) -> str:
     Parameters
     ----------
     read : callable
-        Function that puts what is in the file into an empty model.
+        Function that puts what is in the file, and is in the model, into an empty one.
     sound : bool
         Whether the solids are known to be sound; else that is found out.
     """
     before = counted()
-    after = _tried(read, _STEPS[3], 0.0)
+    tell(f"sewing {before['faces']:,} loose faces")
+    after = _after(_STEPS[3], 0.0)
     same = abs(after["area"] / before["area"] - 1) <= VOLUME_TOLERANCE
     if after["solids"] and same and (sound or not fault()):
         return f"healed: {before['faces']} loose faces were sewn to {after['words']}"
@@ -306,11 +358,8 @@ def sewn(read: Callable[[], None], sound: bool) -> str:
 
 def where(message: str) -> str:
     """Places of surfaces that a message of gmsh names, and of those that it could not mesh."""
-    tags = [int(n) for n in re.findall(r"[Ss]urface (\d+)", message)]
-    with suppress(Exception):
-        tags += [tag for dim, tag in gmsh.model.mesh.getLastEntityError() if dim == 2]
     places = []
-    for tag in dict.fromkeys(tags):
+    for tag in _named(message):
         try:
             x, y, z = gmsh.model.occ.getCenterOfMass(2, tag)
             kind = gmsh.model.getType(2, tag).lower()
@@ -318,3 +367,11 @@ def where(message: str) -> str:
             continue
         places.append(f"face {tag}, a {kind}, round ({x:.4g}, {y:.4g}, {z:.4g}) mm")
     return f"; {', '.join(places[:3])}" if places else ""
+
+
+def _named(message: str) -> list[int]:
+    """Tags of surfaces that a message of gmsh names, and of those that it could not mesh."""
+    tags = [int(n) for n in re.findall(r"(?:[Ss]urface|face) (\d+)", message)]
+    with suppress(Exception):
+        tags += [tag for dim, tag in gmsh.model.mesh.getLastEntityError() if dim == 2]
+    return list(dict.fromkeys(tags))

@@ -29,6 +29,7 @@ from fe_drivetrain.foreign.step_solid import (
     seat_cylinders,
 )
 from fe_drivetrain.foreign.step_solids import Place, all_placed, became, common, outside
+from fe_drivetrain.foreign.telling import tell
 
 MAX_MESH = 400_000
 """Maximum number of elements of a part."""
@@ -451,6 +452,8 @@ def mesh(survey: dict[str, Any], size: float, per_turn: int, optimise: bool) -> 
         ("MeshSizeMin", size / 50),
     ):
         gmsh.option.setNumber(f"Mesh.{option}", value)
+    tell(f"meshing with elements of {size:.3g} mm")
+    gmsh.model.mesh.clear()  # what healing has tried
     try:
         for dim in (1, 2, 3):
             gmsh.model.mesh.generate(dim)

@@ -19,13 +19,15 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.brep_text import in_time, refuse_cut_off
 from fe_drivetrain.foreign.face_messages import nearly
 from fe_drivetrain.foreign.iges_lines import refuse_damaged
-from fe_drivetrain.foreign.step_fit import area_and_middle, recognised
+from fe_drivetrain.foreign.step_fit import area_and_middle, on_edges, recognised
 from fe_drivetrain.foreign.step_heal import counted, free_edges, heal, reason, sewn
 from fe_drivetrain.foreign.step_solids import MAX_SOLIDS, glue, keep, outside, solids
+from fe_drivetrain.foreign.telling import tell
 
 _MAX_FACES = 20_000
 _MIN_VOLUME = 1e-9  # of the cube of its size
 _FARTHEST = 1e9  # any number of a place, in the file's unit
+_TORN = 0.01  # of its radius: edges that are farther from a cylinder or sphere are not its own
 _ALIGNED = 1e-6  # sine of the angle between directions that are the same
 _FORMATS = {".igs": "IGES", ".iges": "IGES", ".brep": "BREP"}
 _CHECKS = {"IGES": refuse_damaged, "BREP": refuse_cut_off}
@@ -77,6 +79,7 @@ def _opened(
     _refuse_odd_numbers(path)
     gmsh.option.setNumber("Geometry.OCCAutoFix", 0)
     gmsh.option.setNumber("Geometry.OCCImportLabels", 1)
+    tell(f"reading {Path(path).stat().st_size / 1e6:.3g} MB")
     _read(path)
     closed = _closed(path, sound=known is not None)
     if not 1 <= (n := len(gmsh.model.getEntities(3))) <= MAX_SOLIDS:
@@ -99,11 +102,14 @@ def _opened(
         if part is not None:
             keep(name, part)
 
-    after, words, step = heal(name, before, again, smallest_detail, known)
+    after, words, step = heal(name, before, again, smallest_detail, known, bool(closed))
     kept = after["faces"] == before["faces"]
     if after["solids"] > 1:
+        gmsh.model.mesh.clear()
         colours = glue(name, math.dist(_box()[:3], _box()[3:]), colours if kept else {})
+    tell(f"looking for bores and planes in {after['faces']:,} faces")
     faces = _named_faces(labels, colours, kept)
+    _refuse_torn(name, faces)
     return {
         "name": name,
         "before": before,
@@ -142,6 +148,24 @@ def _refuse_flat(name: str, box: Sequence[float], volume: float) -> None:
             f"{volume:.3g} mm^3, next to nothing for its size: it is flat, or its faces "
             "cross; repair it in the CAD program"
         )
+
+
+def _refuse_torn(name: str, faces: Sequence[dict[str, Any]]) -> None:
+    """Refuse a cylinder or sphere whose edges lie elsewhere; a plane's middle is of its edges."""
+    for face in faces:
+        if face["kind"] not in ("Cylinder", "Sphere") or "described" in face:
+            continue
+        away = on_edges(face["tag"]) - face["centre"]
+        if axis := face.get("axis"):
+            away -= (away @ np.array(axis))[:, None] * axis
+        off = np.abs(np.linalg.norm(away, axis=1) - face["radius"]).max(initial=0.0)
+        if off > _TORN * face["radius"]:
+            x, y, z = face["middle"]
+            raise InputError(
+                f"{name}: its {face['kind'].lower()} of radius {face['radius']:.6g} mm round "
+                f"({x:.4g}, {y:.4g}, {z:.4g}) mm has edges {off:.3g} mm off it, but must have "
+                f"them within {_TORN:g} of the radius: repair that face in the CAD program"
+            )
 
 
 def _named_faces(

@@ -11,6 +11,7 @@ import pytest
 
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.materials import MATERIALS
 from fe_drivetrain.drivetrain_file.reading import parse_scene, read_scene
 from fe_drivetrain.elasticity.mesh.files import write
@@ -108,12 +109,20 @@ def step_housing(files, name="block.step", **more):
 
 @pytest.fixture(scope="module")
 def survey(files):
-    found = read_in_process("look", files / "named.step", {"smallest_detail": 0.0})
-    return json.loads(str(found["survey"])), found
+    shown: list[str] = []
+    with Steps(lambda step, lane=0: shown.append(step)).step("read"):
+        found = read_in_process("look", files / "named.step", {"smallest_detail": 0.0})
+    return json.loads(str(found["survey"])), found, shown
+
+
+def test_the_process_that_reads_tells_what_it_does_to_how_many_faces(survey):
+    *_, shown = survey
+    assert shown[0] == "read"
+    assert shown[-1] == "read: looking for bores and planes in 18 faces"
 
 
 def test_a_step_file_is_read_in_mm_with_its_volume_labels_colours_and_seats(survey):
-    found, arrays = survey
+    found, arrays, _ = survey
     exact = unit_solids(BEARING, Housing(base="bolted"), 0.4)[1].volume
     for when in ("before", "after"):
         assert found[when]["solids"] == 1

@@ -205,3 +205,35 @@ def test_loose_faces_that_are_known_are_sewn_without_looking_for_faults(tmp_path
     again = survey_of(path, known=first["healed"])
     assert (again["healing"], again["after"]) == (first["healing"], first["after"])
     assert not seen
+
+
+def test_faces_whose_chords_cross_get_smaller_elements_there_alone(tmp_path, monkeypatch):
+    path, radius, inner = tmp_path / "tube.step", 1.0, 0.9982  # a wall of one chord's height
+    with gmsh_session():
+        occ = gmsh.model.occ
+        bore = occ.addCylinder(0, 0, -1, 0, 0, 3, inner)
+        occ.rotate([(3, bore)], 0, 0, 0, 0, 0, 1, 0.2)
+        ((_, tube),), _ = occ.cut([(3, occ.addCylinder(0, 0, 0, 0, 0, 1, radius))], [(3, bore)])
+        write_step(path, [tube])
+    factors = []
+    meshed = step_heal.surface_mesh
+    monkeypatch.setattr(step_heal, "surface_mesh", lambda *f: factors.append(f) or meshed(*f))
+    found = survey_of(path, smallest_detail=0.0)
+    assert found["healing"].startswith("not healed")
+    assert found["after"]["volume"] == pytest.approx(1e9 * np.pi * (1 - inner**2), rel=1e-9)
+    assert len(factors) > 1
+    assert set(factors) == {(1.0,)}
+
+
+def test_a_bore_whose_edges_lie_elsewhere_is_refused_with_its_radius(tmp_path):
+    path = tmp_path / "bored.step"
+    with gmsh_session():
+        occ = gmsh.model.occ
+        bore = occ.addCylinder(0, 0, -1, 0, 0, 3, 0.1)
+        ((_, block),), _ = occ.cut([(3, occ.addBox(-0.5, -0.5, 0, 1, 1, 1))], [(3, bore)])
+        write_step(path, [block])
+    text = path.read_text()
+    (radius,) = re.findall(r"CYLINDRICAL_SURFACE\('',#\d+,([\d.]+)\)", text)
+    path.write_text(text.replace(f",{radius})", f",{1.6 * float(radius)})"))
+    with pytest.raises(InputError, match=r"cylinder of radius 160 mm .* has edges 60 mm off it"):
+        survey_of(path, smallest_detail=0.0)
