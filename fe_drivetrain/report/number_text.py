@@ -12,7 +12,8 @@ DIGITS = 4
 """Significant digits of a number without a band; results.json keeps all of them."""
 
 _NOTHING = 0.1  # share of its band below which a value has no digit
-_MAX_DIGITS = 7  # of a value with a band
+_MAX_DIGITS = 6  # of a value whose band is told in percent
+_FINE = 1e-5  # share of a value: a smaller band is told in percent
 _PRINTED_DIGITS = 7  # of a number that somebody has given; what was computed has more
 _ROUND_OFF = 1e-13  # of one that was converted to another unit
 _MARKS = {"good": "✓", "watch": "!", "bad": "✗"}
@@ -101,7 +102,7 @@ def value_text(
         "145.2 ± 1.3 MN m/rad", or without the band "145.2 MN m/rad".
     """
     text = with_unit(_digits_of(value, unit, band, with_band), unit)
-    if band and with_band and abs(value) > band * 10.0**_MAX_DIGITS:
+    if band and with_band and band < _FINE * abs(value):
         percent = formatted(100.0 * band / abs(value), 2, "%")
         return f"{text} ± {percent}\u00a0%"
     return text
@@ -118,7 +119,7 @@ def _digits_of(value: float, unit: str, band: float | None, with_band: bool) -> 
     scaled, width = value / 10.0**power, band / 10.0**power
     # the last digit of the value is the last of the band's two
     place = int(f"{width:.1e}".partition("e")[2]) - 1
-    if abs(value) > band * 10.0**_MAX_DIGITS:
+    if band < _FINE * abs(value):
         return formatted(value, _MAX_DIGITS, unit)  # the band is told in percent
     if place > 0:
         scaled, width = round(scaled, -place), round(width, -place)
