@@ -69,7 +69,9 @@ TURNING_FORMATS: dict[str, TurningFormat] = {
         "rexs_gearbox",
         left_out="inertias, dampers, mesh stiffness, couplings between motions of a bearing, how "
         "far both directions of a bearing differ, and of a shaft that is given by its torsional "
-        "stiffness all but its place",
+        "stiffness all but its place, which are in attributes custom_fe_drivetrain_... that this "
+        "program alone reads back; fillets of shafts, what the gearbox stands on, housings of main "
+        "bearings and uncertainty, which are in none",
     ),
     ELASTODYN: TurningFormat(
         ".dat",
