@@ -56,13 +56,7 @@ def new_command(
         )
 
         if list_:
-            if wants_json():
-                write_json({name: found.title for name, found in ARRANGEMENTS.items()})
-                return PASSED
-            width = max(map(len, ARRANGEMENTS))
-            lines = [f"{name:<{width}}  {found.title}\n" for name, found in ARRANGEMENTS.items()]
-            write(sys.stdout, "".join(lines))
-            return PASSED
+            return _listed()
         if file is None:
             raise InputError("Missing FILE: name the scene file to write, as in my.yaml, or --list")
         if file.suffix.lower() not in SUFFIXES:
@@ -83,6 +77,19 @@ def new_command(
         return PASSED
 
     raise typer.Exit(guarded(work, "existing files are unchanged"))
+
+
+def _listed() -> int:
+    """Print the arrangements."""
+    from fe_drivetrain.drivetrain_file.arrangements import ARRANGEMENTS
+
+    if wants_json():
+        write_json({name: found.title for name, found in ARRANGEMENTS.items()})
+        return PASSED
+    width = max(map(len, ARRANGEMENTS))
+    lines = [f"{name:<{width}}  {found.title}\n" for name, found in ARRANGEMENTS.items()]
+    write(sys.stdout, "".join(lines))
+    return PASSED
 
 
 def _next(file: Path) -> str:

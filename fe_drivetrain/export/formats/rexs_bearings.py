@@ -116,7 +116,7 @@ def bearings_of(
         for k, stage in enumerate(stages)
         for number, (shaft, _) in enumerate(stage.planets)
     }
-    others: dict[tuple[int, int], list[dict[str, Any]]] = {}
+    pins: dict[tuple[int, int], list[dict[str, Any]]] = {}
     for ends in model.related("side"):
         if not {"assembly", "inner_part", "outer_part"} <= ends.keys():
             continue
@@ -124,34 +124,44 @@ def bearings_of(
         if "bearing" not in bearing.type:
             continue
         sides = [groups.of(ends["inner_part"]), groups.of(ends["outer_part"])]
-        on = [group for group in sides if group in planets]
-        standing = [group for group in sides if groups.holds(group)]
-        turning = [group for group in sides if group in seats.groups]
-        if len(on) == 1 and turning and seats.groups[turning[0]] == planets[on[0]][0]:
-            at_stage, planet = planets[on[0]]
-            gear = stages[at_stage].planets[planet][1]
-            offset = float((places.of(bearing) - places.of(gear))[0])
-            name = bearing.name.removeprefix(f"stage {at_stage + 1} planet {planet + 1}").strip()
-            row = {"name": name, "offset": round(offset, DIGITS)}
-            row |= _springs(bearing, found, notes)
-            others.setdefault((at_stage, planet), []).append(row | _own(bearing, row))
-        elif len(standing) == 1 and turning:
-            number = seats.groups[turning[0]]
-            _add(found, bearing, places, seats, number, notes)
+        on = [planets[group] for group in sides if group in planets]
+        on_shaft = [seats.groups[group] for group in sides if group in seats.groups]
+        if len(on) == 1 and on_shaft == [on[0][0]]:
+            gear = stages[on[0][0]].planets[on[0][1]][1]
+            row = _pin(bearing, places, gear, on[0], found, notes)
+            pins.setdefault(on[0], []).append(row)
+        elif len(on_shaft) == 1 and any(groups.holds(group) for group in sides):
+            _add(found, bearing, places, seats, on_shaft[0], notes)
         else:
-            bearing.used = False
             notes.append(
                 f"{bearing} is neither in the casing nor between a planet and its carrier: left out"
             )
     for k, stage in enumerate(stages):
         if stage.is_planetary:
-            _add_pins(found, k, stage, others, notes)
+            _add_pins(found, k, stage, pins, notes)
     if found.rigid:
         notes.append(
             f"rigid in the model are {', '.join(found.rigid)}: stiffnesses above {RIGID:g} N/m or "
             f"N m/rad are {RIGID:g} here"
         )
     return found
+
+
+def _pin(
+    bearing: Part,
+    places: Places,
+    gear: Part,
+    planet: tuple[int, int],
+    found: Bearings,
+    notes: list[str],
+) -> dict[str, Any]:
+    """Keys of a bearing of a planet."""
+    offset = float((places.of(bearing) - places.of(gear))[0])
+    # as this program names them
+    own_prefix = f"stage {planet[0] + 1} planet {planet[1] + 1}"
+    row: dict[str, Any] = {"name": bearing.name.removeprefix(own_prefix).strip()}
+    row |= {"offset": round(offset, DIGITS)} | _springs(bearing, found, notes)
+    return row | _own(bearing, row)
 
 
 def _add(
@@ -178,17 +188,17 @@ def _add_pins(
     found: Bearings,
     number: int,
     stage: Stage,
-    others: Mapping[tuple[int, int], Sequence[dict[str, Any]]],
+    pins: Mapping[tuple[int, int], Sequence[dict[str, Any]]],
     notes: list[str],
 ) -> None:
     """Bearings of the first planet stand for those of all."""
-    mine = list(others.get((number, 0), ()))
+    mine = list(pins.get((number, 0), ()))
 
     def measure(rows: Sequence[dict[str, Any]]) -> list[tuple[float, str]]:
         return sorted((round(row["offset"], 7), str(row.get("stiffness"))) for row in rows)
 
     for planet in range(1, len(stage.planets)):
-        if measure(others.get((number, planet), ())) != measure(mine):
+        if measure(pins.get((number, planet), ())) != measure(mine):
             notes.append(
                 f"stage {number + 1}: bearings of planet {planet + 1} are not those of planet 1, "
                 "which are taken for all"

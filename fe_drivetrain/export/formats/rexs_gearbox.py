@@ -94,10 +94,12 @@ class _Model:
         self.relate("assembly", assembly=whole, part=number)
         return number
 
-    def relate(self, relation: str, **ends: int) -> None:
-        """Add a relation between components by their roles."""
+    def relate(self, relation: str, order: int | None = None, **ends: int) -> None:
+        """Add a relation between components by their roles, and by its place among such."""
         number = str(len(self.relations) + 1)
         found = ET.SubElement(self.relations, "relation", id=number, type=relation)
+        if order is not None:
+            found.set("order", str(order))
         for role, component in ends.items():
             hint = self.kinds[component - 1]
             ET.SubElement(found, "ref", id=str(component), role=role, hint=hint)
@@ -304,7 +306,26 @@ def _gear(
         for side in ("left", "right")
     )
     model.relate("flank", gear=number, left=left, right=right)
+    _tool(model, name, stage, which, number)
     return number
+
+
+def _tool(
+    model: _Model, name: str, stage: PlanetaryData | ParallelData, which: int, gear: int
+) -> None:
+    """Add what cuts a gear, as far as it is stated: its addendum becomes the gear's dedendum."""
+    found: dict[str, tuple[str, object]] = {}
+    if "dedendum" in stage.model_fields_set:
+        found["addendum_coefficient_reference_profile"] = ("none", stage.dedendum)
+    if stage.fillets is not None:
+        found["tip_radius_factor"] = ("none", stage.fillets[which])
+    kind = "rack_shaped_tool"
+    if isinstance(stage, PlanetaryData) and stage.cutter is not None and which == 0:
+        kind = "cutter_wheel_tool"
+        found["number_of_teeth"] = ("none", stage.cutter)
+    if found:
+        tool = model.component(kind, f"{name}, tool", None, **found)
+        model.relate("ordered_reference", order=1, origin=gear, referenced=tool)
 
 
 def _mesh(

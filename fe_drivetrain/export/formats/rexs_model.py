@@ -119,6 +119,8 @@ class Part:
         value = found.value
         while isinstance(value, list) and value:
             value = value[0]
+        if isinstance(value, float) and value.is_integer():
+            value = int(value)  # an id, in JSON of a program that has no integers
         return str(value).strip().lower() if isinstance(value, bool) else str(value).strip()
 
     def _of(self, key: str) -> Attribute | None:

@@ -19,6 +19,7 @@ PREFIX = "custom_fe_drivetrain_"
 STAGE_KEYS = (
     *("kind", "name", "teeth", "module", "helix", "hand", "pressure_angle", "shifts", "tips"),
     *("faces", "face_width", "centre_distance", "planets", "pins", "angle"),
+    *("dedendum", "fillets", "cutter"),
 )
 """Keys of a stage that REXS's own attributes and relations hold."""
 SHAFT_KEYS = ("name", "sections", "outer", "inner", "material")

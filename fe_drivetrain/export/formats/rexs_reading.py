@@ -237,7 +237,7 @@ def _written(
     if bearings.housing:
         gearbox["bearings"] = bearings.housing
     data = head | own | {"shaft": named[0], "gearbox": gearbox}
-    missing = tuple(_missing(data, found, bearings))
+    missing = tuple(_missing(data, found, rows, bearings))
     not_used = tuple(_not_used(model))
     text = _text(data, origin, file, missing, not_used)
     drivetrain = parse_drivetrain(text, source="as a drivetrain's file it")
@@ -281,7 +281,9 @@ def _origin(model: Model) -> str:
     return f"{version}{later}{by}{f', {model.date}' if model.date else ''}"
 
 
-def _missing(data: dict[str, Any], stages: Sequence[Stage], bearings: Bearings) -> list[Missing]:
+def _missing(
+    data: dict[str, Any], stages: Sequence[Stage], rows: Sequence[Row], bearings: Bearings
+) -> list[Missing]:
     """Keys that the model does not give, those without which nothing runs first."""
     found = []
     if "rotor" not in data:
@@ -301,6 +303,12 @@ def _missing(data: dict[str, Any], stages: Sequence[Stage], bearings: Bearings) 
             found.append(Missing(f"{key}.pins", example, "modes and gears beyond torsion"))
     if "generator" not in data:
         found.append(Missing("generator", "{inertia: ...}", ALL))
+    for k, shaft in enumerate(rows):
+        if not shaft.is_known:
+            key = f"gearbox.shafts.{k - 1}" if k else "shaft"
+            needs = "the torsion of a shaft" if shaft.length else "all beyond torsion"
+            example = "{name: ..., length: ..., outer: ...}"
+            found.append(Missing(key, f"{example}, in place of kind: rigid", f"modes, {needs}"))
     for row, stage_number in bearings.unknown:
         line = yaml.safe_dump(row, default_flow_style=True, allow_unicode=True, width=10**6)
         example = f"- {line.strip()[:-1]}, stiffness: [..., ..., ..., 0, ..., ...]}}"

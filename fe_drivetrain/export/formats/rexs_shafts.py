@@ -45,6 +45,8 @@ class Row:
         Length [m], where it is known.
     parts : list of Part
         Shafts of which it is made.
+    is_known : bool
+        Whether the model gives its sections or its stiffness.
     """
 
     data: dict[str, Any]
@@ -52,6 +54,7 @@ class Row:
     sense: float
     length: float | None
     parts: Sequence[Part]
+    is_known: bool = True
 
 
 def group_shafts(model: Model, groups: Groups) -> dict[str, list[Part]]:
@@ -89,10 +92,10 @@ def shaft_row(
     known = [p for of_shaft in pieces.values() for p in of_shaft]
     low, high, sense = _range(known, planes, places, shafts)
     if not known or by_stiffness(own):
-        return _without_sections(own, shafts, planes, (low, high, sense), notes)
+        return _without_sections(own, shafts, (low, high, sense), notes)
     chosen, used = _chosen(model, shafts, pieces, (low, high))
     if not used:
-        return _without_sections(own, shafts, planes, (low, high, sense), notes)
+        return _without_sections(own, shafts, (low, high, sense), notes)
     for shaft in shafts:
         if shaft not in used and pieces[shaft.number]:
             notes.append(
@@ -275,7 +278,6 @@ def _material(model: Model, shaft: Part, notes: list[str]) -> dict[str, Any]:
 def _without_sections(
     own: dict[str, Any],
     shafts: Sequence[Part],
-    planes: tuple[float | None, float | None],
     span: tuple[float, float, float],
     notes: list[str],
 ) -> Row:
@@ -289,9 +291,9 @@ def _without_sections(
         length = float(given) if isinstance(given, int | float) else None
         return Row(own, begin, sense, length, [shaft])
     notes.append(f"{shaft} has no shaft_section between the stages: it is taken for rigid")
-    known = None not in planes
-    data: dict[str, Any] = {"kind": "rigid"} | ({"length": high - low} if known else {})
-    return Row(data, begin, sense, high - low if known else None, [shaft])
+    length = high - low if high - low > SLIVER else None
+    data: dict[str, Any] = {"kind": "rigid"} | ({"length": length} if length else {})
+    return Row(data, begin, sense, length, [shaft], is_known=False)
 
 
 def planes_of(places: Places, stages: Sequence[Stage]) -> list[tuple[float, float]]:
