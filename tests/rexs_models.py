@@ -109,6 +109,107 @@ def zipped(**files: bytes) -> bytes:
     return buffer.getvalue()
 
 
+AXES = {5: (47.02148907341676, -24.45362069957225), 36: (50.33350037591513, 32.45007497243242)}
+SECTIONS = {
+    4: ("ANW [4]", 0.0, [(154.0, 22.0)]),
+    5: ("RW3 [5]", 137.5, [(2.5, 14.8), (10.0, 15.0), (13.5, 16.0), (23.0, 14.0), (10.5, 15.0)]),
+    36: (
+        "RW5 [36]",
+        128.5,
+        [(7, 14.6), (14, 15), (52, 20), (5, 25.91), (41, 18.403), (9, 25.91), (12, 17), (3, 16.8)],
+    ),
+}
+GEARS = {
+    23: (4, 154.0, 23, 1.0, 30.0, 16.0, 0.581),
+    34: (5, 156.5, 67, 1.0, -30.0, 11.0, 0.5131),
+    38: (5, 175.0, 13, 1.25, -10.0, 23.0, 0.521),
+    52: (36, 177.5, 76, 1.25, 10.0, 15.0, -0.094),
+}
+ROLLERS = {
+    20: ("6305-Z-J", 4, 65.5, "both_directions"),
+    32: ("6202-J [32]", 5, 144.0, "negative"),
+    33: ("6202-J [33]", 5, 192.0, "positive"),
+    49: ("6302-J", 36, 142.0, "negative"),
+    50: ("NUP204E", 36, 194.5, "no_direction"),
+    51: ("6303-J", 36, 263.5, "positive"),
+}
+
+
+def two_parallel_stages() -> bytes:
+    """Two stages of SEW's published gearbox in REXS 1.0, which rexs-api-java (FVA) tests with.
+
+    Numbers are its own [mm, degrees], but the fast shaft's, whose sections are one here.
+    """
+    model = ET.Element("model", version="1.0", applicationId="FVA Workbench")
+    relations, components = ET.SubElement(model, "relations"), ET.SubElement(model, "components")
+
+    def relate(kind: str, **ends: int) -> None:
+        one = ET.SubElement(relations, "relation", id=str(len(relations) + 1), type=kind)
+        for role, number in ends.items():
+            ET.SubElement(one, "ref", id=str(number), role=role)
+
+    def add(number: int, kind: str, name: str, place: Any = None, **values: Any) -> None:
+        one = ET.SubElement(components, "component", id=str(number), type=kind, name=name)
+        for key, (unit, value) in values.items():
+            ET.SubElement(one, "attribute", id=key, unit=unit).text = str(value)
+        if place is not None:
+            row = ET.SubElement(ET.SubElement(one, "attribute", id="support_vector"), "array")
+            for value in place:
+                ET.SubElement(row, "c").text = str(value)
+
+    add(1, "gear_unit", "Gear unit [1]")
+    add(2, "gear_casing", "Casing [2]")
+    number = 1000
+    for shaft, (name, x, sections) in SECTIONS.items():
+        add(shaft, "shaft", name, (x, *AXES.get(shaft, (0, 0))))
+        for length, diameter in sections:
+            number += 1
+            ends = ("outer_diameter_begin", "outer_diameter_end")
+            add(
+                number,
+                "shaft_section",
+                "",
+                length=("mm", length),
+                **dict.fromkeys(ends, ("mm", diameter)),
+            )
+            relate("assembly", assembly=shaft, part=number)
+    for gear, (shaft, x, teeth, module, helix, width, shift) in GEARS.items():
+        geometry = {
+            "number_of_teeth": ("none", teeth),
+            "normal_module": ("mm", module),
+            "helix_angle_reference_diameter": ("°", helix),
+            "face_width": ("mm", width),
+        }
+        add(gear, "cylindrical_gear", f"gear {gear}", (x, *AXES.get(shaft, (0, 0))), **geometry)
+        relate("assembly", assembly=shaft, part=gear)
+        for side in (0, 1):
+            flank = {"addendum_modification_coefficient": ("none", shift)}
+            add(
+                2000 + 2 * gear + side,
+                "flank_geometry",
+                "",
+                normal_pressure_angle=("°", 20.0),
+                **flank,
+            )
+        relate("flank", gear=gear, left=2000 + 2 * gear, right=2001 + 2 * gear)
+    for stage, (first, second, distance) in {6: (23, 34, 53.0), 37: (38, 52, 57.0)}.items():
+        add(
+            stage, "cylindrical_stage", f"Stirnradstufe [{stage}]", center_distance=("mm", distance)
+        )
+        relate("stage", stage=stage, gear_1=first, gear_2=second)
+    for bearing, (name, shaft, x, taken) in ROLLERS.items():
+        springs = {
+            "radial_stiffness": ("N / m", 9.999999999999999e22),
+            "axial_stiffness": ("N / m", 0.0),
+            "bending_stiffness": ("N mm / rad", 0.0),
+            "axial_force_absorption": ("none", taken),
+        }
+        kind, place = "rolling_bearing_with_catalog_geometry", (x, *AXES.get(shaft, (0, 0)))
+        add(bearing, kind, name, place, **springs)
+        relate("side", assembly=bearing, inner_part=shaft, outer_part=2)
+    return ET.tostring(model)
+
+
 def wrong_models(model: ET.Element, count: int, seed: int) -> Iterator[bytes]:
     """Well-formed models with up to four slips: elements gone or twice, other values and words."""
     random = np.random.default_rng(seed)

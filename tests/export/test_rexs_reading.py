@@ -19,6 +19,7 @@ from rexs_models import (
     in_other_units,
     model_of,
     turned,
+    two_parallel_stages,
     without_own,
     wrong_models,
     zipped,
@@ -243,6 +244,42 @@ def test_a_foreign_planetary_stage_by_the_values_of_its_drawing(
     turns = 0.078 * np.cos(alpha)  # each mesh moves by so much of the carrier's turn
     meshes = [3 * stage.sun_planet * (2 * turns) ** 2, 3 * stage.ring_planet * (2 * turns) ** 2]
     assert spring == pytest.approx(1 / sum(1 / k for k in (slow, fast, *meshes)), rel=1e-9)
+
+
+def test_a_published_gearbox_of_parallel_stages_by_hand(tmp_path: Path) -> None:
+    """It is driven at its fast end: read from the slow one, and looked at from the other side."""
+    unit = read(tmp_path / "a.rexs", two_parallel_stages())
+    names = "RW5 [36] - parallel stage 1 - RW3 [5] - parallel stage 2 - ANW [4]"
+    assert unit.chain == names
+    one, two = unit.drivetrain.gearbox.stages
+    assert (one.teeth, two.teeth) == ((76, 13), (67, 23))
+    assert (one.shifts, two.shifts) == ((-0.094, 0.521), (0.5131, 0.581))
+    assert (one.helix, one.hand, two.helix, two.hand) == (10, 1, 30, -1)
+    assert (one.face_width, one.faces) == (0.015, (0.015, 0.023))
+    assert (one.centre_distance, two.centre_distance) == (0.057, 0.053)
+    # from (50.33, 32.45) to (47.02, -24.45) mm, y the other way round
+    y, z = 50.33350037591513 - 47.02148907341676, -24.45362069957225 - 32.45007497243242
+    assert one.angle == pytest.approx(np.degrees(np.arctan2(z, y)))  # type: ignore[union-attr]
+    data = yaml.safe_load(unit.text)
+    rows = [data["shaft"], *data["gearbox"]["shafts"]]
+    lengths = [[section["length"] for section in row.get("sections", [])] for row in rows]
+    # from 271.5 to 177.5, and from 175 to 156.5 mm
+    assert lengths[0] == pytest.approx([0.003, 0.012, 0.009, 0.041, 0.005, 0.024])
+    assert lengths[1] == pytest.approx([0.0115, 0.007])
+    assert [s["outer_diameter"] for s in rows[1]["sections"]] == [0.014, 0.016]
+    assert (rows[2]["length"], rows[2]["outer"]) == pytest.approx((0.154, 0.022))
+    at = {row["name"]: (row["holds"], row["at"]) for row in data["gearbox"]["bearings"]}
+    assert at == {
+        "6303-J": ("RW5 [36]", 0.008),
+        "NUP204E": ("RW5 [36]", 0.077),
+        "6302-J": ("stage 1 gear", 0.0355),
+        "6202-J [33]": ("stage 1 pinion", -0.017),
+        "6202-J [32]": ("stage 2 gear", 0.0125),
+        "6305-Z-J": ("ANW [4]", 0.0885),
+    }
+    assert sum("its axial stiffness is not given" in line for line in unit.assumed) == 5
+    assert any(line.startswith("rigid in the model are 6305") for line in unit.assumed)
+    assert not unit.refused
 
 
 def test_the_command_answers_in_json_and_refuses_in_one_sentence(
