@@ -140,9 +140,10 @@ def bearings_of(
         if stage.is_planetary:
             _add_pins(found, k, stage, pins, notes)
     if found.rigid:
+        more = f" and {len(found.rigid) - 3} more" if len(found.rigid) > 3 else ""
         notes.append(
-            f"rigid in the model are {', '.join(found.rigid)}: stiffnesses above {RIGID:g} N/m or "
-            f"N m/rad are {RIGID:g} here"
+            f"rigid in the model are {', '.join(found.rigid[:3])}{more}: stiffnesses above "
+            f"{RIGID:g} N/m or N m/rad are {RIGID:g} here"
         )
     return found
 

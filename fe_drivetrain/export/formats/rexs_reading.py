@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
 import yaml
 
 from fe_drivetrain.common.errors import InputError
@@ -38,6 +39,7 @@ ALL = "check, modes, gears, transient"
 _PLACES = (
     *("support_vector", "u_axis_vector", "w_axis_vector", "reference_component_for_position"),
 )
+_LARGE = 1e6  # from which on a number has its power of ten
 _LOADS = ("torque_around_u_axis", "rotational_speed")
 
 
@@ -377,10 +379,16 @@ def _text(
 
 
 class _Dumper(yaml.SafeDumper):
-    """Rows of values in one line, and no anchors."""
+    """Rows of values in one line, no anchors, and large numbers with their powers of ten."""
 
     def ignore_aliases(self, data: Any) -> bool:
         return True
+
+    def represent_float(self, data: float) -> Any:
+        if abs(data) < _LARGE:
+            return super().represent_float(data)
+        text = np.format_float_scientific(data, trim="0", exp_digits=1)
+        return self.represent_scalar("tag:yaml.org,2002:float", text)
 
     def represent_sequence(self, tag: str, sequence: Any, flow_style: bool | None = None) -> Any:
         flat = not any(isinstance(one, list | dict | str) for one in sequence)
@@ -392,6 +400,9 @@ class _Dumper(yaml.SafeDumper):
             for one in mapping.values()
         )
         return super().represent_mapping(tag, mapping, flow_style=flat or flow_style)
+
+
+_Dumper.add_representer(float, _Dumper.represent_float)
 
 
 def _numbers(values: Sequence[Any]) -> bool:
