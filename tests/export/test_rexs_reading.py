@@ -339,6 +339,63 @@ def test_what_cannot_be_is_refused_in_one_sentence(
     assert str(caught.value).startswith(str(tmp_path / "a.rexs"))
 
 
+def part(model: ET.Element, name: str) -> ET.Element:
+    found = model.find(f"components/component[@name='{name}']")
+    assert found is not None
+    return found
+
+
+def attribute(model: ET.Element, name: str, key: str) -> ET.Element:
+    found = part(model, name).find(f"attribute[@id='{key}']")
+    assert found is not None
+    return found
+
+
+def joined(model: ET.Element, role: str, whom: str) -> ET.Element:
+    """The model with another shaft at one side of the coupling between ring and casing."""
+    coupling = part(model, "stage 1 ring in the casing").get("id")
+    for relation in model.iterfind("relations/relation[@type='side']"):
+        ends = {ref.get("role"): ref for ref in relation}
+        if ends["assembly"].get("id") == coupling:
+            ends[role].set("id", part(model, whom).get("id", ""))
+    return model
+
+
+def test_who_is_held_in_a_planetary_stage_is_seen(own: ET.Element, tmp_path: Path) -> None:
+    path = tmp_path / "a.rexs"
+    for whom, said in (("LSS", "its carrier is held"), ("IS1", "its sun is held")):
+        with pytest.raises(InputError, match=said):
+            read(path, joined(copy.deepcopy(own), "inner_part", whom))
+    free = copy.deepcopy(own)
+    attribute(free, "stage 1 ring in the casing", "rotational_stiffness").text = "0"
+    unit = read(path, free)
+    assert unit.assumed == (
+        "ring_gear 15 'stage 1 ring' is joined to nothing by the model: it is taken for held",
+    )
+    driven = joined(copy.deepcopy(own), "outer_part", "HSS")
+    with pytest.raises(InputError, match="its ring turns with another stage"):
+        read(path, driven)
+
+
+def test_places_in_a_circle_and_axes_across_are_refused(own: ET.Element, tmp_path: Path) -> None:
+    circle, across, down = (copy.deepcopy(own) for _ in range(3))
+    for one, other in (("LSS", "IS1"), ("IS1", "LSS")):
+        reference = attribute(circle, one, "reference_component_for_position")
+        reference.text = part(circle, other).get("id")
+    with pytest.raises(InputError, match="by a component that is placed by it, in a circle"):
+        read(tmp_path / "a.rexs", circle)
+    cells = list(attribute(across, "IS2", "u_axis_vector").iter("c"))
+    cells[0].text, cells[1].text = "0.0", "1.0"
+    with pytest.raises(InputError, match="an axis that is not parallel"):
+        read(tmp_path / "a.rexs", across)
+    # where gravity is along v, v is down: 60 degrees from y to z are 60 - 90
+    unit = "NREL 750 kW drivetrain of the Gearbox Reliability Collaborative"
+    attribute(down, unit, "direction_vector_gravity_v").text = "1"
+    attribute(down, unit, "direction_vector_gravity_w").text = "0"
+    stages = read(tmp_path / "a.rexs", down).drivetrain.gearbox.stages
+    assert getattr(stages[2], "angle") == pytest.approx(-30.0)  # noqa: B009 - of one kind alone
+
+
 BOMB = "".join(
     f'<!ENTITY {b} "{f"&{a};" * 10}">' for a, b in zip("abcdefgh", "bcdefghi", strict=True)
 )

@@ -139,6 +139,9 @@ def _gear_unit(model: Model, file: str) -> GearUnit:
         len(stages) == 1 and _leads_back(model, places, turning, chain, stages)
     ):
         places.turn_round()
+    for group in chain:
+        for shaft in turning[group]:
+            places.along(shaft)
     planes = planes_of(places, stages)
     notes: list[str] = []
     for stage in stages:
