@@ -304,6 +304,9 @@ def test_the_command_answers_in_json_and_refuses_in_one_sentence(
         assert status == 2
         assert sentence in err
     assert not (tmp_path / "b.yaml").exists()
+    status, _, err = invoke("check", "a.rexs")
+    assert status == 2
+    assert "a.rexs is a gearbox model in REXS, and no drivetrain's file" in err
 
 
 REFUSED = [
