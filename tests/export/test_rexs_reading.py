@@ -447,6 +447,11 @@ def test_what_is_too_large_is_refused_before_it_is_made(
     ):
         with pytest.raises(InputError, match=said):
             read(path, archive)
+    monkeypatch.undo()
+    many = "".join(f'<component id="{k}" type="shaft_section"/>' for k in range(1000, 4000))
+    sections = ET.tostring(own, encoding="unicode").replace("</components>", f"{many}</components>")
+    with pytest.raises(InputError, match="3,000 components of type 'shaft_section' but must have"):
+        read(tmp_path / "a.rexs", sections.encode())
     monkeypatch.setattr(plain_xml, "MAX_ELEMENTS", 100)
     with pytest.raises(InputError, match="more than 100 elements"):
         read(path, b"<model>" + b"<a/>" * 200 + b"</model>")

@@ -7,7 +7,7 @@ file needs and the model has not is listed by its key; so is what the model has 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -36,6 +36,10 @@ ALL = "check, modes, gears, transient"
 """Commands that need all that turns."""
 
 
+MOST = 2000
+"""Components of one type, as shafts, sections and bearings, that a model may have."""
+
+_COMPARED = ("shaft", "shaft_section", "planetary_stage", "cylindrical_stage")
 _PLACES = (
     *("support_vector", "u_axis_vector", "w_axis_vector", "reference_component_for_position"),
 )
@@ -124,6 +128,7 @@ def read_gear_unit(path: str | Path) -> GearUnit:
 
 
 def _gear_unit(model: Model, file: str) -> GearUnit:
+    _check_size(model)
     groups = Groups(model)
     stages = stages_of(model, groups)
     turning = group_shafts(model, groups)
@@ -166,6 +171,16 @@ def _gear_unit(model: Model, file: str) -> GearUnit:
     return _written(model, file, (stages, made), (rows, names), bearings, notes)
 
 
+def _check_size(model: Model) -> None:
+    """Refuse more components of a kind than any gear unit has, before they are compared."""
+    for kind, count in Counter(part.type for part in model.parts.values()).items():
+        if count > MOST and (kind in _COMPARED or "bearing" in kind):
+            raise InputError(
+                f"the model has {count:,} components of type {shown(kind)} but must have at most "
+                f"{MOST:,}: give that of one gear unit"
+            )
+
+
 def _leads_back(
     model: Model,
     places: Places,
@@ -189,13 +204,13 @@ def _between(
 
 def _names(rows: Sequence[Row]) -> list[str]:
     """Names of shafts, each its own."""
-    found: list[str] = []
+    found: dict[str, None] = {}
     for row in rows:
-        found.append(_own_name(row.parts[0].name, f"shaft {row.parts[0].number}", found))
-    return found
+        found[_own_name(row.parts[0].name, f"shaft {row.parts[0].number}", found)] = None
+    return list(found)
 
 
-def _own_name(name: str, other: str, taken: Sequence[str]) -> str:
+def _own_name(name: str, other: str, taken: Container[str]) -> str:
     """A name that the gate of a drivetrain's file takes, as near as can be to one of the model."""
     made = name or other
     if made in RESERVED or made.startswith("stage "):
@@ -217,16 +232,16 @@ def _written(
 ) -> GearUnit:
     """The file's text, and what is missing and left over."""
     (found, made), (rows, names) = stages, shafts
-    taken = list(names)
+    taken = set(names)
     for row in (*bearings.housing, *(row for row, stage in bearings.unknown if stage is None)):
         row["name"] = _own_name(row["name"], "bearing", taken)
-        taken.append(row["name"])
+        taken.add(row["name"])
     for k, pins in bearings.pins.items():
-        pin_names: list[str] = []
+        pin_names: set[str] = set()
         for pin in pins:
             if pin["name"] or pin_names:
                 pin["name"] = _own_name(pin["name"], "pin bearing", pin_names)
-            pin_names.append(pin["name"])
+            pin_names.add(pin["name"])
         made[k]["pins"] = pins
     named = [{"name": name} | row.data for name, row in zip(names, rows, strict=True)]
     units = model.of_type("gear_unit")
