@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 EXAMPLES: Mapping[str, tuple[str, ...]] = {
-    "new": ("mine.yaml", "mine.yaml --arrangement two-bearings", "--list"),
+    "new": (
+        "mine.yaml",
+        "mine.yaml --arrangement two-bearings",
+        "mine.yaml --from gearbox.rexs",
+        "--list",
+    ),
     "check": ("two_bearings", "mine.yaml --open"),
     "study": (
         "two_bearings --quick",

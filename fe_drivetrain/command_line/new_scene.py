@@ -1,4 +1,4 @@
-"""The command ``new``: write a scene to start from."""
+"""The command ``new``: write a scene to start from, or a drivetrain from a gearbox model."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from fe_drivetrain.common.errors import InputError
 
 SUFFIXES = (".yaml", ".yml")
 """Endings of files that a user edits."""
+DEFAULT = "three-point"
+"""Arrangement where none is given."""
 
 
 def new_command(
@@ -30,11 +32,20 @@ def new_command(
             metavar="NAME",
             help="How the shaft is supported; --list shows the arrangements.",
         ),
-    ] = "three-point",
+    ] = DEFAULT,
+    source: Annotated[
+        Path | None,
+        typer.Option(
+            "--from",
+            metavar="MODEL",
+            help="A gearbox model in REXS 1.0 to 1.6 (.rexs, .rexsj, .rexsz) to begin from: what "
+            "it does not give is listed.",
+        ),
+    ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace existing files.")] = False,
     list_: Annotated[bool, typer.Option("--list", help="List the arrangements and exit.")] = False,
 ) -> None:
-    """Write a scene to start from, with comments, and its schema for editors beside it."""
+    """Write a drivetrain to start from, with comments, and its schema for editors beside it."""
 
     def work() -> int:
         from fe_drivetrain.drivetrain_file.arrangements import (
@@ -45,17 +56,15 @@ def new_command(
         )
 
         if list_:
-            if wants_json():
-                write_json({name: found.title for name, found in ARRANGEMENTS.items()})
-                return PASSED
-            width = max(map(len, ARRANGEMENTS))
-            lines = [f"{name:<{width}}  {found.title}\n" for name, found in ARRANGEMENTS.items()]
-            write(sys.stdout, "".join(lines))
-            return PASSED
+            return _listed()
         if file is None:
             raise InputError("Missing FILE: name the scene file to write, as in my.yaml, or --list")
         if file.suffix.lower() not in SUFFIXES:
             raise InputError(f"{file} must end in {' or '.join(SUFFIXES)}: name it as in my.yaml")
+        if source is not None:
+            if arrangement != DEFAULT:
+                raise InputError("--from is a gearbox and --arrangement another: give one of them")
+            return _from_model(file, source, overwrite)
         texts = {
             file: starting_scene(arrangement),
             file.with_name(SCHEMA_FILE): drivetrain_schema(),
@@ -64,14 +73,64 @@ def new_command(
         if wants_json():
             write_json({"file": str(file), "title": ARRANGEMENTS[arrangement].title})
             return PASSED
-        write(
-            sys.stdout,
-            f"{file}: {ARRANGEMENTS[arrangement].title}\n"
-            f"Edit it, then: fe-drivetrain check {shlex.quote(str(file))}\n",
-        )
+        write(sys.stdout, f"{file}: {ARRANGEMENTS[arrangement].title}\n{_next(file)}")
         return PASSED
 
     raise typer.Exit(guarded(work, "existing files are unchanged"))
+
+
+def _listed() -> int:
+    """Print the arrangements."""
+    from fe_drivetrain.drivetrain_file.arrangements import ARRANGEMENTS
+
+    if wants_json():
+        write_json({name: found.title for name, found in ARRANGEMENTS.items()})
+        return PASSED
+    width = max(map(len, ARRANGEMENTS))
+    lines = [f"{name:<{width}}  {found.title}\n" for name, found in ARRANGEMENTS.items()]
+    write(sys.stdout, "".join(lines))
+    return PASSED
+
+
+def _next(file: Path) -> str:
+    return f"Edit it, then: fe-drivetrain check {shlex.quote(str(file))}\n"
+
+
+def _from_model(file: Path, source: Path, overwrite: bool) -> int:
+    """Write the drivetrain of a gearbox model, and say what it lacks and what is left over."""
+    from fe_drivetrain.drivetrain_file.arrangements import SCHEMA_FILE, drivetrain_schema
+    from fe_drivetrain.export.formats.rexs_reading import read_gear_unit
+
+    unit = read_gear_unit(source)
+    texts = {file: unit.text, file.with_name(SCHEMA_FILE): drivetrain_schema()}
+    write_all(texts, overwrite)
+    if wants_json():
+        write_json(
+            {
+                "file": str(file),
+                "title": unit.drivetrain.title,
+                "source": f"{source}: {unit.origin}",
+                "chain": unit.chain,
+                "missing": [one._asdict() for one in unit.missing],
+                "assumed": list(unit.assumed),
+                "refused": list(unit.refused),
+                "not_used": list(unit.not_used),
+            }
+        )
+        return PASSED
+    lists = {
+        "Not in the model, to be filled in": [
+            f"{one.key}: {one.example}  (for {one.commands})" for one in unit.missing
+        ],
+        "Refused as soon as that is there": unit.refused,
+        "Assumed": unit.assumed,
+        "In the model and not used": unit.not_used,
+    }
+    said = [f"{file}: {unit.drivetrain.title}, from {unit.origin}", f"  {unit.chain}"]
+    for head, lines in lists.items():
+        said += [f"{head}:", *(f"  {line}" for line in lines)] if lines else []
+    write(sys.stdout, "\n".join(said) + "\n" + _next(file))
+    return PASSED
 
 
 def write_all(texts: dict[Path, str], overwrite: bool) -> None:

@@ -67,16 +67,16 @@ def named_drivetrain_or_component(
     name: str, changes: Mapping[str, Any] | None = None
 ) -> Drivetrain | Component:
     """The drivetrain or component in a file or of the library; see `read_drivetrain`."""
-    from fe_drivetrain.common.reading import read_text
     from fe_drivetrain.drivetrain_file.reading import (
         is_component,
         library_text,
         parse_component,
         read_component,
+        scene_file_text,
     )
 
     of_file = _is_file(name)
-    text = read_text(name, "scene") if of_file else library_text(name)
+    text = scene_file_text(name) if of_file else library_text(name)
     if not is_component(text):
         return read_drivetrain(name, changes)
     return read_component(name, changes) if of_file else parse_component(text, changes, name)

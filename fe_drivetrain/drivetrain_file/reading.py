@@ -24,6 +24,8 @@ from fe_drivetrain.drivetrain_file.lumped import LumpedDrivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.geometry import Bearing
 
+GEARBOX_MODELS = (".rexs", ".rexs.xml", ".rexsj", ".rexs.json", ".rexsz", ".rexs.zip")
+"""Endings of gearbox models in REXS."""
 BY_STIFFNESS = ("torsion", "outer", "kind")
 """Keys of a main shaft that is given without sections."""
 
@@ -55,13 +57,29 @@ def read_scene(path: str | Path, changes: Mapping[str, Any] | None = None) -> Sc
 
 def drivetrain_of_file(path: str | Path, changes: Mapping[str, Any] | None = None) -> Drivetrain:
     """Read a drivetrain from a YAML file, its main shaft with sections or not; see `read_scene`."""
-    data = _changed_mapping(read_text(path, "scene"), changes, str(path))
+    data = _changed_mapping(scene_file_text(path), changes, str(path))
     _beside(Path(path).parent, data.get("bearing_units"))
     _carriers_beside(Path(path).parent, data.get("gearbox"))
     found = _drivetrain(data, str(path))
     if isinstance(found, Scene):
         check_files(found.bearing_units)
     return found
+
+
+def scene_file_text(path: str | Path) -> str:
+    """Text of a scene's or component's file.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or is a gearbox model by its name.
+    """
+    if str(path).lower().endswith(GEARBOX_MODELS):
+        raise InputError(
+            f"{path} is a gearbox model in REXS, and no drivetrain's file: make one of it by "
+            "fe-drivetrain new, which begins from such a model"
+        )
+    return read_text(path, "scene")
 
 
 def with_sections(drivetrain: Drivetrain, source: str) -> Scene:
@@ -151,7 +169,7 @@ def read_component(path: str | Path, changes: Mapping[str, Any] | None = None) -
     InputError
         The file cannot be read, is not such YAML, or does not describe a component.
     """
-    return parse_component(read_text(path, "scene"), changes, source=str(path))
+    return parse_component(scene_file_text(path), changes, source=str(path))
 
 
 def parse_component(

@@ -16,6 +16,8 @@ from .files import write_superelement as write_superelement
 from .formats.craig_bampton_json import read_craig_bampton as read_craig_bampton
 from .formats.elastodyn import Torsion as Torsion
 from .formats.extptfm import read_release_4 as read_release_4
+from .formats.rexs_reading import GearUnit as GearUnit
+from .formats.rexs_reading import read_gear_unit as read_gear_unit
 from .formats.stiffness_file import read_stiffness_json as read_stiffness_json
 from .formats.stiffness_file import stiffness_matrix as stiffness_matrix
 from .formats.stiffness_file import write_stiffness_json as write_stiffness_json

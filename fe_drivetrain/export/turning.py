@@ -85,6 +85,8 @@ class Turning:
         Name and version.
     options : dict of str to str
         What was asked for: level, generator.
+    drivetrain : Drivetrain
+        The drivetrain as its file states it.
     machine : Machine
         Bodies, shafts, stages and bearings.
     names : tuple of str
@@ -99,6 +101,7 @@ class Turning:
     hash: str
     program: str
     options: dict[str, str]
+    drivetrain: Drivetrain
     machine: Machine
     names: tuple[str, ...]
     mass: Floats
@@ -190,6 +193,7 @@ def turning_of(drivetrain: Drivetrain, level: Level, held: bool = False) -> Turn
         hash=drivetrain_hash(drivetrain),
         program=f"fe-drivetrain {version('fe-drivetrain')}",
         options={"level": level.name.lower(), "generator": "held" if held else "free"},
+        drivetrain=drivetrain,
         machine=machine,
         names=system.names,
         mass=system.mass,

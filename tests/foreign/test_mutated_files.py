@@ -3,6 +3,7 @@
 A few mutants of each form are tried; 500 of each by FE_DRIVETRAIN_MUTANTS=500.
 """
 
+import json
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from fe_drivetrain.common.spatial import point_motions
 from fe_drivetrain.elasticity.mesh.measures import scaled_jacobians
 from fe_drivetrain.export.formats.labelled_matrices import Naming
 from fe_drivetrain.export.superelement import Superelement
+from fe_drivetrain.foreign.child import _ACTIONS
 from fe_drivetrain.foreign.mesh_file import read
 from fe_drivetrain.foreign.step_solid import opened
 from fe_drivetrain.geometry import gmsh_session
@@ -66,6 +68,7 @@ MESHES = (
     "cube.stl",
 )
 SOLIDS = ("cube.igs", "cube.brep", "cube.step")
+LOOKED = "bored.step"
 MATRICES = {
     "own.json": ("json", Naming()),
     "own.csv": ("csv", Naming()),
@@ -107,6 +110,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
             gmsh.option.setNumber("Mesh.MshFileVersion", version)
             gmsh.option.setNumber("Mesh.Binary", name == "binary")
             gmsh.write(str(top / f"{name}.msh"))
+    with gmsh_session():
+        occ = gmsh.model.occ
+        block = occ.addBox(-200, -150, 0, 400, 300, 300)
+        occ.cut([(3, block)], [(3, occ.addCylinder(-300, 0, 150, 600, 0, 0, 80))])
+        occ.synchronize()
+        gmsh.write(str(top / LOOKED))
     import meshio
 
     cells = read(str(top / "cube.inp"))
@@ -151,6 +160,14 @@ def solid(path: Path) -> dict[str, Any]:
         return opened(str(path))
 
 
+def looked_at(path: Path) -> dict[str, Any]:
+    """As `part` looks: the solids, what may be a seat, and a coarse surface for a picture."""
+    request = {"file": str(path), "smallest_detail": 0.0}
+    found = _ACTIONS["look"](request)
+    survey: dict[str, Any] = json.loads(str(found["survey"]))
+    return survey | {"triangles": found["triangles"], "points": found["points"]}
+
+
 def matrix(path: Path) -> Superelement:
     form, naming = MATRICES[path.name]
     return export.read_superelement(path, form, naming)
@@ -174,6 +191,13 @@ def judge_solid(found: dict[str, Any]) -> None:
     assert 0.0 < found["after"]["volume"] < np.inf
 
 
+def judge_look(found: dict[str, Any]) -> None:
+    """A picture of it, or why there is none."""
+    judge_solid(found)
+    assert len(found["triangles"]) or found["unmeshed"]
+    assert np.isfinite(found["points"]).all()
+
+
 def judge_matrix(found: Superelement) -> None:
     """Its own checks have passed; it is made again by them."""
     assert np.isfinite(found.stiffness).all()
@@ -183,6 +207,7 @@ def judge_matrix(found: Superelement) -> None:
 KINDS = {
     **dict.fromkeys(MESHES, (mesh, judge_mesh)),
     **dict.fromkeys(SOLIDS, (solid, judge_solid)),
+    LOOKED: (looked_at, judge_look),
     **dict.fromkeys(MATRICES, (matrix, judge_matrix)),
 }
 
@@ -200,7 +225,7 @@ def test_a_mutant_is_read_or_refused_in_one_sentence(
     path = tmp_path / name
     fates: Counter[str] = Counter()
     faults: list[str] = []
-    count = COUNT or (2 if name in SOLIDS else 5)
+    count = COUNT or (2 if name in (*SOLIDS, LOOKED) else 5)
     for number, content in enumerate([sound, *mutants(sound, count, seed=48)]):
         path.write_bytes(content)
         fate, what = outcome(lambda: work(path))

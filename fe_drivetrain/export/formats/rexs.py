@@ -16,6 +16,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.plain_xml import plain_root
 from fe_drivetrain.export.formats.statement import (
     comment_lines,
     commented,
@@ -99,9 +100,8 @@ def read(path: Path) -> Superelement:
         The file is no REXS model, or holds no reduced stiffness with its points.
     """
     text = text_of(path, "REXS model").removeprefix("\ufeff")
+    model = plain_root(text.encode(), f"{path} is no REXS model with a reduced stiffness")
     try:
-        parser = ET.XMLParser(target=ET.TreeBuilder(insert_comments=True))
-        model = ET.fromstring(text, parser)
         found = {c.get("id"): c for c in model.iterfind("components/component")}
         group = next(
             c for c in found.values() if c.find(f"attribute[@id='{_STIFFNESS}']") is not None
@@ -113,7 +113,7 @@ def read(path: Path) -> Superelement:
             [float(c.text or "") for c in point.iterfind("attribute[@id='support_vector']/array/c")]
             for point in points
         ]
-    except (ET.ParseError, StopIteration, ValueError, KeyError, TypeError) as error:
+    except (StopIteration, ValueError, KeyError, TypeError) as error:
         raise InputError(
             f"{path} is no REXS model with a reduced stiffness: {type(error).__name__} {error}"
         ) from error
