@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from fe_drivetrain.common import Floats
 from fe_drivetrain.turbine_loads.histories import Spectrum, spectrum
@@ -122,6 +121,8 @@ def peaks(found: Spectrum, speed: float) -> list[Peak]:
     speed : float
         Of the rotor [Hz].
     """
+    from scipy.signal import find_peaks
+
     density = found.density[1:]
     places, _ = find_peaks(np.log(density), prominence=np.log(STANDS_OUT))
     return [_peak(found.frequency[1:] / speed, density, int(i)) for i in places]

@@ -323,8 +323,8 @@ def answer_of_both(page: Page, errors: dict[str, calibrated.Errors], work: Worke
         ],
         hero=charts.series_caption(work.hub, "bonded", "vertical", "Fz"),
         cautions=[
-            "Hub loads of the thesis, and its housing but for K_R, are not public: what thrust does "
-            "to the bearing depends on the housing's shape.",
+            "Hub loads of the thesis, and its housing but for K_R, are not public: what thrust "
+            "does to the bearing depends on the housing's shape.",
             f"K_R is by {calibrated.THESIS_WAY} of the housing, as the thesis has it; by the "
             "averaged seat stands below.",
             "The mean error leaves out samples with a reference below 0.1 % of its rms.",
