@@ -31,7 +31,7 @@ Statement = tuple[str, dict[str, str], dict[str, bool | None]]
 
 def show(
     page: Page, sets: Mapping[str, OfSet], modes: Mapping[str, float], of_thesis: bool
-) -> int | None:
+) -> None:
     """Spectra by set, labelled peaks, and statements.
 
     Parameters
@@ -44,15 +44,31 @@ def show(
         "flap" and "edge" of a turning blade [Hz].
     of_thesis : bool
         Whether the thesis's statements are judged.
-
-    Returns
-    -------
-    held : int or None
-        Statements that hold by one reading of the load; None where none is judged.
     """
     base = sets[BASE]
-    page.section("Spectra of raceway loads")
     at = labels(modes, base.speed)
+    page.section("Spectra of raceway loads")
+    _spectra(page, sets, at)
+    segments = base.spectra[READINGS[0]].segments
+    if segments < FEWEST:
+        page.text(
+            f"{segments} segments of a set are too few to tell its peaks from scatter: "
+            f"{FEWEST} at least are asked for."
+        )
+        return
+    rows = [row for reading in READINGS for row in _rows(sets, at, reading)]
+    page.table(
+        f"Peaks that stand out {STANDS_OUT:g} times over the valleys beside them; modes of a blade "
+        "are looked for at their own frequency and one turn below and above it",
+        rows,
+    )
+    page.data("peaks of raceway loads", rows)
+    if of_thesis:
+        _statements(page, sets, at)
+
+
+def _spectra(page: Page, sets: Mapping[str, OfSet], at: Mapping[str, list[float]]) -> None:
+    """Spectra of both readings, the labels marked."""
     lines = {name: orders[len(orders) // 2] for name, orders in at.items()}
     for reading, words in WORDS.items():
         drawn = chart(
@@ -70,28 +86,12 @@ def show(
             logarithmic=("y",),
         )
         page.add(mark_events(drawn, lines))
-    segments = base.spectra[READINGS[0]].segments
-    if segments < FEWEST:
-        page.text(
-            f"{segments} segments of a set are too few to tell its peaks from scatter: "
-            f"{FEWEST} at least are named beside the statements of appendix B."
-        )
-        return None
-    rows = [row for reading in READINGS for row in _rows(sets, at, reading)]
-    page.table(
-        f"Peaks that stand out {STANDS_OUT:g} times over the valleys beside them; modes of a blade "
-        "are looked for at their own frequency and one turn below and above it",
-        rows,
-    )
-    page.data("peaks of raceway loads", rows)
     page.text(
         f"Densities are means over winds from {RATED_ON:g} m/s on, where the rotor keeps its "
         f"speed, by Welch's method with segments of {SEGMENT:g} s; breadth is that of a rectangle "
-        "of the same height and power. The thesis does not say which load of a raceway it "
-        "transforms: both readings stand here. A balanced rotor of three blades passes on 3P, 6P "
-        "and 9P to what stands; a point of the race that turns passes the load zone once a turn."
+        "of the same height and power. A balanced rotor of three blades passes on 3P, 6P and 9P to "
+        "what stands; a point of the race that turns passes the load zone once a turn."
     )
-    return _statements(page, sets, at) if of_thesis else None
 
 
 def _rows(sets: Mapping[str, OfSet], at: Mapping[str, list[float]], reading: str) -> list[Record]:
@@ -112,7 +112,7 @@ def _rows(sets: Mapping[str, OfSet], at: Mapping[str, list[float]], reading: str
     return rows
 
 
-def _statements(page: Page, sets: Mapping[str, OfSet], at: Mapping[str, list[float]]) -> int:
+def _statements(page: Page, sets: Mapping[str, OfSet], at: Mapping[str, list[float]]) -> None:
     said = statements(sets, at)
     page.section("Statements of appendix B")
     page.table(
@@ -127,11 +127,11 @@ def _statements(page: Page, sets: Mapping[str, OfSet], at: Mapping[str, list[flo
     either = sum(any(agrees.values()) for *_, agrees in said)
     page.text(
         f"Of {len(said)} statements {held[0]} hold for the load that stands, {held[1]} for the one "
-        f"that turns, {either} for one of them. Blades of the thesis's turbine are private: our "
+        f"that turns, {either} for one of them: the thesis does not say which load it transforms. "
+        "Blades of the thesis's turbine are private: our "
         "modes are those of the NREL 5 MW blade in proportion. Our rotor is balanced; what "
         "imbalance and a mispitched blade add at 1P is in `histories/modes_and_imbalance`."
     )
-    return either
 
 
 def _word(agrees: bool | None) -> str:

@@ -20,6 +20,7 @@ from fe_drivetrain.common import (
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.report import Image, Solid, Text
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.beam import main_bearing_beam
@@ -213,22 +214,7 @@ def answer(page: Page, work: Worked) -> None:
     page.found(f"{force} [N/N]", float(reaction[2, 2]), work.forces[0]["± FE"])
     page.found(f"{spring} [%]", spring_error)
     up = page.judged(force, "force on the bearing, per force up at the hub")
-    pinned_error = 100 * abs(work.pinned[2, 2] / up.value - 1)
-    verdict = (
-        f"A hub force of 1\u00a0kN up puts {value_text(up.value, 'kN', up.band, False)} on the "
-        f"bearing; a beam on K_R errs by {spring_error:.2g} %, a pinned beam by "
-        f"{pinned_error:.2g} %."
-    )
-    beside = []
-    if work.other is not None:
-        there = calibrated.force_up(work.other)
-        of_pinned = 100 * abs(work.pinned[2, 2] / there - 1)
-        verdict = (
-            f"1\u00a0kN up at the hub puts {value_text(up.value, 'kN', up.band, False)} on the "
-            f"bearing, {value_text(there, 'kN')} with the thesis's K_R; a pinned beam errs by "
-            f"{pinned_error:.2g} and {of_pinned:.2g} %."
-        )
-        beside = [page.value("the same in the calibrated housing [N/N]", there)]
+    verdict, beside = verdict_of(page, work, up, spring_error)
     page.answer(
         "How much of a hub load does a bonded main bearing carry, and does a beam show it?",
         verdict,
@@ -268,6 +254,27 @@ def answer(page: Page, work: Worked) -> None:
             "Numerical uncertainty of these forces, from two coarser meshes: "
             f"{of_forces:.2g} %; of K_R {k_band:.2g} %."
         )
+
+
+def verdict_of(
+    page: Page, work: Worked, up: KeyFigure, spring_error: float
+) -> tuple[str, list[KeyFigure]]:
+    """What a hub force puts on the bearing, in words; the calibrated housing's beside it."""
+    pinned_error = 100 * abs(work.pinned[2, 2] / up.value - 1)
+    of_up = value_text(up.value, "kN", up.band, False)
+    if work.other is None:
+        return (
+            f"A hub force of 1\u00a0kN up puts {of_up} on the bearing; a beam on K_R errs by "
+            f"{spring_error:.2g} %, a pinned beam by {pinned_error:.2g} %.",
+            [],
+        )
+    there = calibrated.force_up(work.other)
+    of_pinned = 100 * abs(work.pinned[2, 2] / there - 1)
+    return (
+        f"1\u00a0kN up at the hub puts {of_up} on the bearing, {value_text(there, 'kN')} with the "
+        f"thesis's K_R; a pinned beam errs by {pinned_error:.2g} and {of_pinned:.2g} %.",
+        [page.value("the same in the calibrated housing [N/N]", there)],
+    )
 
 
 def reactions_section(page: Page, work: Worked) -> None:

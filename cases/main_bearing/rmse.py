@@ -333,6 +333,27 @@ def answer_of_both(page: Page, errors: dict[str, calibrated.Errors], work: Worke
     )
 
 
+def answered(
+    run: Run, page: Page, work: Worked, error_band: dict[str, float | None]
+) -> dict[str, calibrated.Errors]:
+    """Give the answer, in both housings where the scene is the thesis's; errors by housing."""
+    with run.step("both housings"):
+        errors = {
+            name: calibrated.errors_of(work.hub.loads, one) for name, one in work.housings.items()
+        }
+    if work.other is None:
+        answer(page, work.found, work, error_band)
+    else:
+        calibrated.check(page, work.other)
+        answer_of_both(page, errors, work)
+    page.say(
+        "On a spherical bearing pinned beam and FE agree to solver accuracy: statics decide, and "
+        "their agreement says nothing about the FE model. Deflection, slope and stiffness, which "
+        "do depend on it, stand below.",
+    )
+    return errors
+
+
 def stiffness_section(page: Page, work: Worked, stiffness: Floats) -> None:
     """K_R, deflection and slope, which reactions do not show."""
     tilt, series = work.tilt, work.series
@@ -394,24 +415,12 @@ def run(run: Run, page: Page) -> None:
         label: of_beams.band(lambda f, k=k: float(f["beams"][k]))
         for k, label in enumerate(list(PUBLISHED)[1:])
     }
-    housings = work.housings
-    with run.step("both housings"):
-        errors = {name: calibrated.errors_of(hub.loads, one) for name, one in housings.items()}
-    if work.other is None:
-        answer(page, found, work, error_band)
-    else:
-        calibrated.check(page, work.other)
-        answer_of_both(page, errors, work)
-    page.say(
-        "On a spherical bearing pinned beam and FE agree to solver accuracy: statics decide, and "
-        "their agreement says nothing about the FE model. Deflection, slope and stiffness, which "
-        "do depend on it, stand below.",
-    )
+    errors = answered(run, page, work, error_band)
     page.section("Model")
     page.add(*work.pictures)
     result_section(page, hub, found, error_band)
     if errors:
-        rows = [*calibrated.stiffness_rows(housings), *calibrated.conclusions(errors)]
+        rows = [*calibrated.stiffness_rows(work.housings), *calibrated.conclusions(errors)]
         calibrated.section(page, rows)
         calibrated.statements_table(page, errors)
     page.section("RMSE by wind speed, turbulence and shear")
