@@ -190,7 +190,8 @@ def _of_sets(
     )
     # a window makes a line two spacings wide
     spacing = sets[BASE].spectra[reading].spacing / sets[BASE].speed
-    label, rows = STRONGEST[reading], []
+    label = STRONGEST[reading]
+    rows: list[tuple[str, str, bool | None]] = []
     for words, one, other, what, expected in (
         ("shear raises amplitudes", flat, steep, "height", "more"),
         ("their breadth stays similar with shear", flat, steep, "breadth", "same"),

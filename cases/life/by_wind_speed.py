@@ -96,13 +96,13 @@ def run(run: Run, page: Page) -> None:
     )
     page.data("life at the site [years]", rows)
     state_meaning(page)
-    own = {name: at_site(by_wind(one), MEAN_WIND) for name, one in lives.items()}
-    answer(page, own, ratios)
+    at = {name: at_site(by_wind(one), MEAN_WIND) for name, one in lives.items()}
+    answer(page, at, ratios)
     page.say(
         f"Laminae that carry evenly would have {np.mean(stress_riser(30) ** 4.5) ** (-8 / 9):.2f} "
         "of the life. With the roller profile that the stress riser is meant for, life is "
-        f"{own[PROFILED]:.1f} years; without stress riser, but with the lambda nu = 1 that belongs "
-        f"to that, {own[FAIR]:.1f} years.",
+        f"{at[PROFILED]:.1f} years; without stress riser, but with the lambda nu = 1 that belongs "
+        f"to that, {at[FAIR]:.1f} years.",
     )
 
 
