@@ -13,19 +13,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
-from fe_drivetrain.cases.main_bearing.comparison import PUBLISHED
-from fe_drivetrain.common import FORCES, Floats
+from fe_drivetrain.cases.main_bearing.comparison import PUBLISHED, of_one_mesh
+from fe_drivetrain.common import FORCES
 from fe_drivetrain.drivetrain_file import Scene, library_scene
 from fe_drivetrain.report.suite import Jobs, Page, Record, Run, RunJob
+from fe_drivetrain.shafts.response import ESTIMATORS
 from fe_drivetrain.studies import Assembly, LinearModel, SeatStiffness
 from fe_drivetrain.studies.closed_forms import PINNED, SPRUNG, closed_form_models, force_errors
 from fe_drivetrain.studies.scene_description import quick_scene
 from fe_drivetrain.studies.solved_assembly import timed_mesh
+from fe_drivetrain.turbine_loads.hub_loads import HubLoadSet
 
 GENERIC, CALIBRATED = "generic housing", "calibrated housing"
 LABEL = "calibrated"
 THESIS_WAY = "four nodes"
 """The estimator of K_R by which the thesis finds its values, section 3.3.1."""
+FOUR_NODES = ESTIMATORS.index(THESIS_WAY)
 ENOUGH = 2.0
 """What is asked of the torsional-spring beam, of 1.61 in the thesis [%]."""
 OVER = 1.1
@@ -57,9 +60,7 @@ class Housed:
 
     def band(self, plane: int) -> float | None:
         """Half width of the band of that K_R [MN m/rad]."""
-        names = list(next(iter(self.tilt.by_plane.values())))
-        at = names.index(THESIS_WAY)
-        return self.series.band(lambda f: float(f["K_R"][plane, at]) / 1e6)
+        return self.series.band(lambda f: float(f["K_R"][plane, FOUR_NODES]) / 1e6)
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,6 +185,9 @@ class Errors:
         Mean resultant force of the pinned beam over that of FE.
     without : dict of str to float
         Mean error of the torsional-spring beam by the averaged seat with a load left out [%].
+    pinned_band, thesis_band : float or None
+        Half widths of the bands of the first mean error, and of that by four nodes [%]; None
+        without coarser meshes.
     """
 
     pinned: tuple[float, float]
@@ -191,6 +195,8 @@ class Errors:
     as_thesis: tuple[float, float]
     overestimate: float
     without: Mapping[str, float]
+    pinned_band: float | None = None
+    thesis_band: float | None = None
 
     @property
     def improves(self) -> bool:
@@ -198,13 +204,38 @@ class Errors:
         return self.as_thesis[0] < 0.5 * self.pinned[0]
 
 
-def errors_of(loads: Floats, housed: Housed) -> Errors:
-    """Errors of both beams in one housing, of hub loads (m, n, 6).
+def bands_of(hub: HubLoadSet, housed: Housed) -> tuple[float | None, float | None]:
+    """Bands of the mean errors of the pinned beam, and of springs by four nodes [%].
 
     Parameters
     ----------
-    loads : Floats
-        The histories [N, N m].
+    hub : HubLoadSet
+        The histories.
+    housed : Housed
+        With coarser meshes; without them there are no bands.
+    """
+    if not housed.series.complete or housed.solved is None:
+        return None, None
+    scene, name = housed.solved.scene, f"reaction {housed.solved.bearing}"
+    levels = tuple(
+        {
+            "size": f["size"],
+            "errors": np.array(of_one_mesh(hub, scene, f[name], f["K_R"][:, FOUR_NODES])),
+        }
+        for f in housed.series.levels
+    )
+    of_errors = bands.Series(levels)
+    pinned, springs = (of_errors.band(lambda f, k=k: float(f["errors"][k])) for k in (0, 1))
+    return pinned, springs
+
+
+def errors_of(hub: HubLoadSet, housed: Housed) -> Errors:
+    """Errors of both beams in one housing.
+
+    Parameters
+    ----------
+    hub : HubLoadSet
+        The histories.
     housed : Housed
         Solved with its gearbox.
     """
@@ -212,7 +243,7 @@ def errors_of(loads: Floats, housed: Housed) -> Errors:
     scene = housed.solved.scene
     solid = LinearModel.of_fe(scene, housed.solved.response)
     beams = closed_form_models(scene, {}, housed.tilt)
-    histories = list(loads)
+    loads, histories = hub.loads, list(hub.loads)
 
     def of(name: str) -> tuple[float, float]:
         found = force_errors(solid, beams[name], histories)
@@ -232,6 +263,7 @@ def errors_of(loads: Floats, housed: Housed) -> Errors:
         of(SPRUNG.format(THESIS_WAY)),
         pinned / reference,
         {name: found.mean_error_percent for name, found in without.items()},
+        *bands_of(hub, housed),
     )
 
 
@@ -240,22 +272,32 @@ def conclusions(errors: Mapping[str, Errors]) -> list[Record]:
     _, second, third = PUBLISHED
     (pinned, pinned_r), (sprung, sprung_r) = PUBLISHED[second], PUBLISHED[third]
 
-    def row(words: str, printed: float | None, values: Sequence[float]) -> Record:
-        return {
-            "conclusion": words,
-            "thesis": printed,
-            **dict(zip(errors, values, strict=True)),
-        }
+    def row(
+        words: str,
+        printed: float | None,
+        values: Sequence[float],
+        widths: Sequence[float | None] | None = None,
+    ) -> Record:
+        found: Record = {"conclusion": words, "thesis": printed}
+        for name, value, width in zip(errors, values, widths or [None] * len(values), strict=True):
+            found[name], found[f"± {name}"] = value, width
+        return found
 
     every = list(errors.values())
     return [
-        row("pinned beam: mean error [%]", pinned, [e.pinned[0] for e in every]),
+        row(
+            "pinned beam: mean error [%]",
+            pinned,
+            [e.pinned[0] for e in every],
+            [e.pinned_band for e in every],
+        ),
         row("pinned beam: correlation", pinned_r, [e.pinned[1] for e in every]),
         row("pinned beam: mean force over FE", None, [e.overestimate for e in every]),
         row(
             f"torsional springs, K_R by {THESIS_WAY}: mean error [%]",
             sprung,
             [e.as_thesis[0] for e in every],
+            [e.thesis_band for e in every],
         ),
         row(
             f"torsional springs, K_R by {THESIS_WAY}: correlation",

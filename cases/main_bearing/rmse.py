@@ -301,6 +301,7 @@ def answer_of_both(page: Page, errors: dict[str, calibrated.Errors], work: Worke
                 page.value(
                     f"{words}, {name} [%]",
                     value[0],
+                    band,
                     beside=PUBLISHED[label][0],
                     by="thesis",
                 )
@@ -308,9 +309,9 @@ def answer_of_both(page: Page, errors: dict[str, calibrated.Errors], work: Worke
                     (calibrated.CALIBRATED, other),
                     (calibrated.GENERIC, generic),
                 )
-                for label, words, value in (
-                    (third, "mean error, torsional springs", one.as_thesis),
-                    (second, "mean error, pinned beam", one.pinned),
+                for label, words, value, band in (
+                    (third, "mean error, torsional springs", one.as_thesis, one.thesis_band),
+                    (second, "mean error, pinned beam", one.pinned, one.pinned_band),
                 )
             ),
             page.value(
@@ -338,9 +339,7 @@ def answered(
 ) -> dict[str, calibrated.Errors]:
     """Give the answer, in both housings where the scene is the thesis's; errors by housing."""
     with run.step("both housings"):
-        errors = {
-            name: calibrated.errors_of(work.hub.loads, one) for name, one in work.housings.items()
-        }
+        errors = {name: calibrated.errors_of(work.hub, one) for name, one in work.housings.items()}
     if work.other is None:
         answer(page, work.found, work, error_band)
     else:
