@@ -128,10 +128,38 @@ def _statements(page: Page, sets: Mapping[str, OfSet], at: Mapping[str, list[flo
     page.text(
         f"Of {len(said)} statements {held[0]} hold for the load that stands, {held[1]} for the one "
         f"that turns, {either} for one of them: the thesis does not say which load it transforms. "
-        "Blades of the thesis's turbine are private: our "
-        "modes are those of the NREL 5 MW blade in proportion. Our rotor is balanced; what "
-        "imbalance and a mispitched blade add at 1P is in `histories/modes_and_imbalance`."
+        "Blades of the thesis's turbine are private: our modes are those of the NREL 5 MW blade in "
+        "proportion. Our rotor is balanced: what imbalance and a mispitched blade add is beside it."
     )
+
+
+def show_imbalance(page: Page, balanced: OfSet, spoilt: OfSet, wind: float) -> None:
+    """What imbalance and a mispitched blade, which the thesis does not state, add at 1P.
+
+    Parameters
+    ----------
+    page : Page
+        Takes it, in the section of the statements.
+    balanced, spoilt : OfSet
+        At one wind, of the same seeds.
+    wind : float
+        That wind [m/s].
+    """
+    rows: list[Record] = []
+    for name, one in (("balanced", balanced), ("imbalance, one blade 0.3 deg off", spoilt)):
+        row: Record = {"rotor": name}
+        for order in (1, 3):
+            peak = one.near("stands", [float(order)])
+            row[f"peak at {order}P [kN/Hz^0.5]"] = None if peak is None else peak.height
+            amplitude = one.spectra["stands"].amplitude(order * one.speed)
+            row[f"amplitude about {order}P [kN]"] = amplitude
+        rows.append(row)
+    page.table(
+        f"Load of the race that stands at {wind:g} m/s, {BASE}: a rotor whose imbalance nobody "
+        "states, and one of balance grade G16",
+        rows,
+    )
+    page.data("imbalance in raceway loads", rows)
 
 
 def _word(agrees: bool | None) -> str:

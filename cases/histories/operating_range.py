@@ -1,12 +1,16 @@
 """Loads on a main bearing over the operating range: 330 histories with a controller."""
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.histories import operating_appendix, operating_rollers
+from fe_drivetrain.cases.histories.modes_and_imbalance import GRADE, WIND
 from fe_drivetrain.cases.histories.operating_loads import (
+    BASE,
     FIXED,
     LEFT,
     LOADS,
@@ -25,7 +29,9 @@ from fe_drivetrain.cases.references.main_bearings import own_bearing
 from fe_drivetrain.cases.references.thesis_beam import ASSUMED
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.turbine_loads.hub_loads import (
+    Condition,
     Rotor,
+    Turbine,
     TurbineHistory,
     designed_controller,
     natural_frequencies,
@@ -94,8 +100,32 @@ def run(run: Run, page: Page) -> None:
     speed = next(iter(spectra.values())).speed
     modes = natural_frequencies(turbine, 2.0 * np.pi * speed)
     operating_appendix.show(page, spectra, modes, own is None)
+    if own is None and not run.quick:
+        with run.step("imbalance"):
+            imbalance(page, grid, found, of, turbine)
     if own is not None:
         own_answer(page, own, means, rollers)
+
+
+def imbalance(
+    page: Page,
+    grid: Sequence[Condition],
+    found: Sequence[OfCondition],
+    of: Studied,
+    turbine: Turbine,
+) -> None:
+    """The load of a raceway at one wind under a rotor with imbalance, beside that without."""
+    chosen = [c for c in grid if c.wind_speed == WIND and set_name(c) == BASE]
+    spoilt = replace(turbine, mass_imbalance=GRADE, pitch_errors=(math.radians(0.3), 0.0, 0.0))
+    made = turbine_histories(chosen, spoilt, designed_controller(turbine))
+    own = [of_condition(c, one, of) for c, one in zip(chosen, made, strict=True)]
+    base = [one for c, one in zip(grid, found, strict=True) if c in chosen]
+    names = [BASE] * len(chosen)
+    balanced, other = (
+        of_sets(chosen, names, [one.spectra[of.first] for one in part])[BASE]
+        for part in (base, own)
+    )
+    operating_appendix.show_imbalance(page, balanced, other, WIND)
 
 
 def show(page: Page, means: Sequence[Record]) -> None:

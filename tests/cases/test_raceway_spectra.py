@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fe_drivetrain.cases.histories.operating_appendix import show, statements
+from fe_drivetrain.cases.histories.operating_appendix import show, show_imbalance, statements
 from fe_drivetrain.cases.histories.operating_loads import BASE
 from fe_drivetrain.cases.histories.operating_spectra import (
     OfSet,
@@ -126,3 +126,15 @@ def test_means_are_of_winds_from_rated_on_and_few_segments_name_no_peak() -> Non
     page = Page()
     show(page, sets, MODES, of_thesis=True)
     assert any("too few to tell" in getattr(i, "text", "") for s in page.sections for i in s.items)
+
+
+def test_imbalance_stands_at_the_speed_of_the_rotor() -> None:
+    balanced = of({"stands": [(3.0, 20.0, 0.2)], "turns": []})
+    spoilt = of({"stands": [(1.0, 5.0, 0.1), (3.0, 20.0, 0.2)], "turns": []})
+    page = Page()
+    page.section("Statements")
+    show_imbalance(page, balanced, spoilt, 16.0)
+    before, after = page.tables["imbalance in raceway loads"]
+    assert before["peak at 1P [kN/Hz^0.5]"] is None
+    assert after["peak at 1P [kN/Hz^0.5]"] == pytest.approx(5.0, rel=1e-2)
+    assert after["peak at 3P [kN/Hz^0.5]"] == before["peak at 3P [kN/Hz^0.5]"]
