@@ -8,7 +8,6 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.histories import operating_appendix, operating_rollers
-from fe_drivetrain.cases.histories.modes_and_imbalance import GRADE, WIND
 from fe_drivetrain.cases.histories.operating_loads import (
     BASE,
     FIXED,
@@ -26,6 +25,7 @@ from fe_drivetrain.cases.histories.operating_own import own_answer
 from fe_drivetrain.cases.histories.operating_spectra import of_sets
 from fe_drivetrain.cases.histories.operating_words import statements
 from fe_drivetrain.cases.references.main_bearings import own_bearing
+from fe_drivetrain.cases.references.rotor_imbalance import GRADE
 from fe_drivetrain.cases.references.thesis_beam import ASSUMED
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.turbine_loads.hub_loads import (
@@ -39,6 +39,9 @@ from fe_drivetrain.turbine_loads.hub_loads import (
     similar_turbine,
     turbine_histories,
 )
+
+WIND = 16.0
+"""Wind at which a rotor with imbalance stands beside the balanced one [m/s]."""
 
 
 @case(
