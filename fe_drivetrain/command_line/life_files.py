@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from itertools import chain, count
 from pathlib import Path
 
 import numpy as np
@@ -45,7 +46,11 @@ class SeriesFiles:
     def _write(self, folder: Path, series: LoadSeries) -> None:
         history = short_name(series.file, self._files)
         words = [re.sub(r"[^\w.-]+", "-", word) for word in (series.bearing, history)]
-        name = f"series_{'_'.join(words)}.csv"
+        stem = f"series_{'_'.join(words)}"
+        used = {row["file"] for row in self.written}
+        # names that differ only where no file's name may
+        numbered = (f"{stem}_{k}.csv" for k in count(2))
+        name = next(one for one in chain([f"{stem}.csv"], numbered) if one not in used)
         facts = {
             "bearing": series.bearing,
             "file": history,

@@ -9,6 +9,7 @@ from test_commands_life import LOADS, RPM, SCENE, rows_of, write_history
 from tiny_case import Result
 
 from fe_drivetrain.bearing.rolling import equilibrium
+from fe_drivetrain.command_line.life_files import SeriesFiles
 from fe_drivetrain.command_line.life_request import rollers_of
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.reading import library_scene
@@ -82,6 +83,19 @@ def test_series_come_one_by_one_and_stay_nowhere(histories: Path) -> None:
     assert not hasattr(found.bearings["main_bearing"], "series")
     assert life(scene, files, options=LifeOptions(), each=came.append).bearings
     assert len(came) == 2
+
+
+def test_bearings_of_like_names_have_files_of_their_own(tmp_path: Path) -> None:
+    files = SeriesFiles([Path("v8.csv")])
+    write = files.into(tmp_path)
+    for number, name in enumerate(("front a", "front-a", "front/a")):
+        write(
+            LoadSeries(name, Path("v8.csv"), ("x [kN]",), np.arange(2.0), np.full((2, 1), number))
+        )
+    names = ["series_front-a_v8.csv", "series_front-a_v8_2.csv", "series_front-a_v8_3.csv"]
+    assert [row["file"] for row in files.written] == names
+    for number, name in enumerate(names):
+        assert {row["x [kN]"] for row in rows_of(tmp_path / name)} == {str(number)}
 
 
 def test_winds_pool_files_by_their_time() -> None:
