@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.references.rotor_imbalance import GRADE
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.typeset import MINUS
 from fe_drivetrain.report import chart, mark_events, trace
@@ -28,8 +29,6 @@ from fe_drivetrain.turbine_loads.hub_loads import (
 )
 
 WIND = 16.0
-#: Eccentricity times speed of a quality grade G16 at 1.75 rad/s, times the rotor's mass [kg m].
-GRADE = 0.016 / 1.75 * 38.3e3
 COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 
 

@@ -5,16 +5,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.bearing_life.coupled import CoupledEquilibrium, coupled_equilibrium, factors_of
-from fe_drivetrain.cases.references.thesis_beam import BEAM, BEARINGS, beam_body, bearing_s
+from fe_drivetrain.cases.histories.operating_spectra import Raceway, raceway_spectra
+from fe_drivetrain.cases.references.main_bearings import (
+    ARRANGED,
+    OTHERWISE,
+    InShaft,
+    thesis_in_shaft,
+)
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report.suite import Record, grouped
 from fe_drivetrain.shafts.beam import MainBearingBeam, torsional_spring_model
 from fe_drivetrain.turbine_loads.hub_loads import Condition, TurbineHistory
 
 ROLLERS, FIXED = "rollers in the beam", "constant K_R"
-ARRANGED, OTHERWISE = "X, 38 deg", "O, 20 deg"
-"""Arrangement and contact angle of bearing S, neither of which is printed, and another."""
 #: As the loads on the bearing are named, with what they are of Fx, Fy, Fz, My, Mz.
 LOADS: dict[str, Callable[[Floats], Floats]] = {
     "axial force [kN]": lambda loads: loads[:, 0],
@@ -35,7 +38,9 @@ class OfCondition:
     rows : list of Record
         Least, mean and largest loads, a row for each bearing.
     mean, largest : dict of str to Floats
-        (72,) loads of each place of a roller, those of the upwind row first, by arrangement [kN].
+        (rollers,) loads of each place of a roller, the upwind row first, by arrangement [kN].
+    spectra : dict of str to Raceway
+        Of the load of the upwind raceway, by arrangement.
     settled : bool
         Whether the equilibrium converged in every step.
     """
@@ -43,18 +48,39 @@ class OfCondition:
     rows: list[Record]
     mean: dict[str, Floats]
     largest: dict[str, Floats]
+    spectra: dict[str, Raceway]
     settled: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Studied:
+    """A main bearing under the loads of the operating range.
+
+    Attributes
+    ----------
+    arrangements : dict of str to InShaft
+        On its rollers; the first has its loads in rows, the others show what a choice does.
+    springs : bool
+        Whether the thesis's beam with constant K_R stands beside them.
+    """
+
+    arrangements: dict[str, InShaft]
+    springs: bool
+
+    @property
+    def first(self) -> str:
+        """The arrangement whose loads are shown."""
+        return next(iter(self.arrangements))
+
+
+def of_thesis() -> Studied:
+    """Bearing S in two arrangements, beside constant K_R."""
+    return Studied({name: thesis_in_shaft(name) for name in (ARRANGED, OTHERWISE)}, springs=True)
 
 
 def set_name(condition: Condition) -> str:
     """Turbulence and shear."""
     return f"{condition.turbulence}, shear {condition.shear:g}"
-
-
-def on_rollers(hub_loads: Floats, entry: str = BEARINGS[ARRANGED]) -> CoupledEquilibrium:
-    """Beam and rollers of bearing S in balance under hub loads (n, 6) [N, N m]."""
-    factors = factors_of(hub_loads, BEAM.gearbox_weight)
-    return coupled_equilibrium(beam_body(), {"bearing": bearing_s(entry)}, factors)
 
 
 def on_springs(hub_loads: Floats) -> Floats:
@@ -65,20 +91,27 @@ def on_springs(hub_loads: Floats) -> Floats:
 
 def bearing_loads(hub_loads: Floats, model: str) -> Floats:
     """(n, 5) loads on the bearing by one of both models [kN, kN m]."""
-    of = on_rollers(hub_loads).of("bearing") if model == ROLLERS else on_springs(hub_loads)
-    return 1e-3 * of
+    if model == ROLLERS:
+        return 1e-3 * thesis_in_shaft().under(hub_loads).of("bearing")
+    return 1e-3 * on_springs(hub_loads)
 
 
-def of_condition(condition: Condition, history: TurbineHistory) -> OfCondition:
+def of_condition(condition: Condition, history: TurbineHistory, of: Studied) -> OfCondition:
     """Loads on the bearing of one history, on its rollers and on constant springs."""
-    hub_loads = history.history.loads
-    found = {name: on_rollers(hub_loads, BEARINGS[name]) for name in (ARRANGED, OTHERWISE)}
-    rollers = {name: 1e-3 * one.rollers("bearing") for name, one in found.items()}
-    both = {ROLLERS: found[ARRANGED].of("bearing"), FIXED: on_springs(hub_loads)}
+    ways = of.arrangements
+    found = {name: one.under(history.history) for name, one in ways.items()}
+    rollers = {name: 1e-3 * one.rollers(ways[name].name) for name, one in found.items()}
+    both = {ROLLERS: found[of.first].of(ways[of.first].name)}
+    if of.springs:
+        both[FIXED] = on_springs(history.history.loads)
     return OfCondition(
         [_row(condition, history, name, 1e-3 * loads) for name, loads in both.items()],
         {name: one.mean(axis=0) for name, one in rollers.items()},
         {name: one.max(axis=0) for name, one in rollers.items()},
+        {
+            name: raceway_spectra(one[:, : ways[name].bearing.counts[0]], history)
+            for name, one in rollers.items()
+        },
         all(one.converged.all() for one in found.values()),
     )
 

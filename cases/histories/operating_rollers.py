@@ -1,26 +1,24 @@
 """Loads of each roller over the operating range, beside Stirling 2023, section 5.2.2."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from fe_drivetrain.bearing import angles
 from fe_drivetrain.cases.histories.operating_loads import (
-    ARRANGED,
     BASE,
-    OTHERWISE,
     OfCondition,
+    Studied,
     set_name,
 )
 from fe_drivetrain.cases.histories.operating_words import FLAT, HIGH_SET, LOW_SET, STEEP
-from fe_drivetrain.cases.references.thesis_beam import bearing_s
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record
+from fe_drivetrain.studies.rolling_bearings import row_names
 from fe_drivetrain.turbine_loads.hub_loads import Condition
 
-ROWS = ("upwind row", "downwind row")
 NEAR = 60.0
 """How far from top or bottom the load zone may be centred to be there [deg]."""
 SAME = 0.05
@@ -35,57 +33,69 @@ class Rollers:
     ----------
     winds : Floats
         (w,) wind speeds [m/s].
+    psi : Floats
+        (n,) places [rad], from the right upward, looking downwind.
     mean, largest : dict of str to Floats
-        (w, 2, n) over the seeds: mean of means, largest of all; by set [kN].
+        (w, rows, n) over the seeds: mean of means, largest of all; by set [kN].
     """
 
     winds: Floats
+    psi: Floats
     mean: dict[str, Floats]
     largest: dict[str, Floats]
 
     def peak(self, own: str = BASE, what: str = "mean") -> Floats:
-        """(w, 2) load of the roller with most of it, of each row [kN]."""
+        """(w, rows) load of the roller with most of it, of each row [kN]."""
         return np.asarray(getattr(self, what)[own].max(axis=2))
 
     def centre(self, own: str = BASE) -> Floats:
-        """(w, 2) angle about which mean loads lie [deg], 0 on the right, 90 on top."""
-        psi = angles(bearing_s().rows[0])
-        return np.asarray(np.degrees(np.angle(self.mean[own] @ np.exp(1j * psi))))
+        """(w, rows) angle about which mean loads lie [deg], 0 on the right, 90 on top."""
+        return np.asarray(np.degrees(np.angle(self.mean[own] @ np.exp(1j * self.psi))))
 
     def share(self, own: str) -> Floats:
-        """(w, 2) share of a row's rollers with more than half of the largest mean load."""
+        """(w, rows) share of a row's rollers with more than half of the largest mean load."""
         mean = self.mean[own]
         return np.asarray((mean > 0.5 * mean.max(axis=2, keepdims=True)).mean(axis=2))
 
 
-def by_set(grid: Sequence[Condition], found: Sequence[OfCondition], bearing: str) -> Rollers:
+def by_set(
+    grid: Sequence[Condition], found: Sequence[OfCondition], name: str, of: Studied
+) -> Rollers:
     """Loads of an arrangement's rollers over the seeds of each wind and set."""
+    rows = of.arrangements[name].bearing.rows
     winds = np.unique([c.wind_speed for c in grid])
     mean: dict[str, Floats] = {}
     largest: dict[str, Floats] = {}
     for own in dict.fromkeys(set_name(c) for c in grid):
-        of = [
+        by_wind = [
             [one for c, one in zip(grid, found, strict=True) if (c.wind_speed, set_name(c)) == key]
             for key in ((wind, own) for wind in winds)
         ]
-        mean[own] = np.stack([np.mean([o.mean[bearing] for o in part], axis=0) for part in of])
-        largest[own] = np.stack([np.max([o.largest[bearing] for o in part], axis=0) for part in of])
-    halves = (len(winds), 2, -1)
+        mean[own] = np.stack([np.mean([o.mean[name] for o in part], axis=0) for part in by_wind])
+        largest[own] = np.stack(
+            [np.max([o.largest[name] for o in part], axis=0) for part in by_wind]
+        )
+    halves = (len(winds), len(rows), -1)
     return Rollers(
         winds,
+        angles(rows[0]),
         {own: values.reshape(halves) for own, values in mean.items()},
         {own: values.reshape(halves) for own, values in largest.items()},
     )
 
 
-def show(page: Page, grid: Sequence[Condition], found: Sequence[OfCondition]) -> None:
-    """Loads of each place by wind, and what section 5.2.2 says of them."""
-    rollers, otherwise = (by_set(grid, found, bearing) for bearing in (ARRANGED, OTHERWISE))
-    psi = np.degrees(angles(bearing_s().rows[0])) % 360.0
+def show(
+    page: Page, grid: Sequence[Condition], found: Sequence[OfCondition], of: Studied
+) -> Rollers:
+    """Loads of each place by wind; of the thesis's bearing also what section 5.2.2 says of them."""
+    ways = {name: by_set(grid, found, name, of) for name in of.arrangements}
+    rollers = ways[of.first]
+    psi = np.degrees(rollers.psi) % 360.0
     order = np.argsort(psi)
+    rows = row_names(len(of.arrangements[of.first].bearing.rows))
     page.section("Rollers by wind")
     for own in (FLAT, STEEP):
-        for k, row in enumerate(ROWS):
+        for k, row in enumerate(rows):
             page.chart(
                 f"Mean load of each roller, {row}, {own}",
                 [
@@ -99,10 +109,18 @@ def show(page: Page, grid: Sequence[Condition], found: Sequence[OfCondition]) ->
         "rollers",
         [
             {"bearing": name, **record}
-            for name, of in ((ARRANGED, rollers), (OTHERWISE, otherwise))
-            for record in _records(of, psi)
+            for name, one in ways.items()
+            for record in _records(one, rows)
         ],
     )
+    if of.springs:
+        _statements(page, ways)
+    return rollers
+
+
+def _statements(page: Page, ways: Mapping[str, Rollers]) -> None:
+    """Sentences of section 5.2.2 on both arrangements of bearing S."""
+    (first, rollers), (second, otherwise) = ways.items()
     page.section("Statements of section 5.2.2")
     page.table(
         "The thesis, of a 1.5 MW turbine, and ours, of 2 MW; rollers held in their places",
@@ -112,7 +130,7 @@ def show(page: Page, grid: Sequence[Condition], found: Sequence[OfCondition]) ->
                 said(rollers), said(otherwise), strict=True
             )
         ],
-        ["thesis", ARRANGED, f"agrees, {ARRANGED}", OTHERWISE, f"agrees, {OTHERWISE}"],
+        ["thesis", first, f"agrees, {first}", second, f"agrees, {second}"],
     )
     held = [sum(agrees for *_, agrees in said(one)) for one in (rollers, otherwise)]
     page.text(
@@ -121,7 +139,8 @@ def show(page: Page, grid: Sequence[Condition], found: Sequence[OfCondition]) ->
     )
 
 
-def _records(rollers: Rollers, psi: Floats) -> list[Record]:
+def _records(rollers: Rollers, rows: Sequence[str]) -> list[Record]:
+    psi = np.degrees(rollers.psi) % 360.0
     return [
         {
             "set": own,
@@ -133,7 +152,7 @@ def _records(rollers: Rollers, psi: Floats) -> list[Record]:
         }
         for own in rollers.mean
         for i, wind in enumerate(rollers.winds)
-        for k, row in enumerate(ROWS)
+        for k, row in enumerate(rows)
         for j in np.argsort(psi)
     ]
 

@@ -7,6 +7,15 @@ import numpy as np
 from fe_drivetrain.bearing_life.life import equivalent_life, stress_riser, years
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.life.operating import state_assumptions, state_meaning
+from fe_drivetrain.cases.life.own_lives import (
+    EVENLY,
+    FAIR,
+    PROFILED,
+    RISEN,
+    own_histories,
+    own_variants,
+)
+from fe_drivetrain.cases.references.main_bearings import OwnBearing, own_bearing
 from fe_drivetrain.cases.references.studied_lives import (
     EDGES,
     HOUSING,
@@ -25,7 +34,9 @@ from fe_drivetrain.cases.references.studied_lives import (
 from fe_drivetrain.cases.references.thesis_beam import BEARINGS, beam_body, housed_body
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
+from fe_drivetrain.studies.shown_units import bearing_in_words
 from fe_drivetrain.turbine_loads.histories import Site
 
 #: Site of the thesis's figure 5.9 [m/s], and its lives without and with the stress riser [years].
@@ -33,16 +44,22 @@ MEAN_WIND = 10.0
 THESIS = (7.9, 1.6)
 SOURCE = "Stirling 2023, section 5.3.6, figure 5.9"
 
-EVENLY, RISEN = "straight, f = 1", "straight, f of ISO"
-PROFILED, FAIR = "profile, f of ISO", "straight, f = 1, lambda nu = 1"
-
 
 @case(
     "Basic life of a main bearing against wind speed, with and without stress riser",
     source="Stirling 2023, section 5.3.6",
+    settings={
+        "drivetrain": "FILE, or a name of the library (otherwise the thesis's beam and bearing S)",
+        "bearing": "NAME of a main bearing of your drivetrain (otherwise its first one)",
+        "catalogue": "FILE with entries of your bearings, beside the program's",
+    },
 )
 def run(run: Run, page: Page) -> None:
     """Lives at eleven wind speeds and at a site, of three arrangements in two housings."""
+    own = own_bearing(run, page, "Basic life of a main bearing against wind speed")
+    if own is not None:
+        of_own(run, page, own)
+        return
     state_assumptions(page)
     winds = Winds("medium", 0.1, 3, 20.0, 1.0) if run.quick else Winds("medium", 0.1, 6, 600.0, 0.5)
     with run.step("hub loads"):
@@ -79,17 +96,50 @@ def run(run: Run, page: Page) -> None:
     )
     page.data("life at the site [years]", rows)
     state_meaning(page)
-    own = {name: at_site(by_wind(one), MEAN_WIND) for name, one in lives.items()}
-    answer(page, own, ratios)
+    at = {name: at_site(by_wind(one), MEAN_WIND) for name, one in lives.items()}
+    answer(page, at, ratios)
     page.say(
         f"Laminae that carry evenly would have {np.mean(stress_riser(30) ** 4.5) ** (-8 / 9):.2f} "
         "of the life. With the roller profile that the stress riser is meant for, life is "
-        f"{own[PROFILED]:.1f} years; without stress riser, but with the lambda nu = 1 that belongs "
-        f"to that, {own[FAIR]:.1f} years.",
+        f"{at[PROFILED]:.1f} years; without stress riser, but with the lambda nu = 1 that belongs "
+        f"to that, {at[FAIR]:.1f} years.",
     )
 
 
-HERO = "Basic reference life with the choices of the thesis: face to face, 38 deg, rigid housing"
+def of_own(run: Run, page: Page, own: OwnBearing) -> None:
+    """Lives of a user's bearing at the same winds, and at the same site."""
+    winds = Winds("medium", 0.1, 3, 20.0, 1.0) if run.quick else Winds("medium", 0.1, 6, 600.0, 0.5)
+    with run.step("hub loads"):
+        histories = own_histories(winds, own.rotor)
+    with run.step(f"lives of {own.one.name}"):
+        lives = own_variants(own, histories)
+    check_variants(page, lives)
+    speed = rotor_speed(own.rotor)
+    show(page, lives, winds, speed, printed=False)
+    state_meaning(page)
+    at = {name: at_site(by_wind(one, speed[:, None]), MEAN_WIND) for name, one in lives.items()}
+    page.answer(
+        f"How much life of {bearing_in_words(own.one.name)} does the stress at roller ends cost?",
+        f"At {MEAN_WIND:g}\u00a0m/s mean wind the stress riser leaves {at[RISEN] / at[EVENLY]:.2f} "
+        f"of the basic life of {value_text(at[EVENLY], 'years')}; with profiled rollers it is "
+        f"{value_text(at[PROFILED], 'years')}.",
+        [
+            page.value("life with stress riser over life without", at[RISEN] / at[EVENLY]),
+            page.value("life without stress riser [years]", at[EVENLY]),
+            page.value("life with stress riser [years]", at[RISEN]),
+            page.value("life with stress riser and profiled rollers [years]", at[PROFILED]),
+        ],
+        hero=HERO,
+        cautions=[
+            "Hub loads are those of a surrogate, brought to the rated power and speed of the "
+            "drivetrain: `fe-drivetrain life` takes your own files.",
+            "Housings are rigid, and lives are basic ones: `fe-drivetrain life` has lubricant and "
+            "contamination, too.",
+        ],
+    )
+
+
+HERO = "Basic reference life by wind speed, rigid housing"
 
 
 def answer(page: Page, own: dict[str, float], ratios: list[float]) -> None:
@@ -142,8 +192,8 @@ def at_the_site(lives: dict[str, Floats]) -> Record:
     return {**found, "ratio": found[RISEN] / found[EVENLY]}
 
 
-def check(page: Page, lives: dict[str, Floats], winds: Winds) -> None:
-    """What does not depend on whose turbine it is."""
+def check_variants(page: Page, lives: dict[str, Floats]) -> None:
+    """Life without stress riser by both values of lambda nu."""
     page.equals(
         "life without stress riser: lambda nu of 0.83 over 1, the worst step",
         float((lives[EVENLY] / lives[FAIR]).max()),
@@ -152,6 +202,11 @@ def check(page: Page, lives: dict[str, Floats], winds: Winds) -> None:
         why="round-off: life goes with the fourth power of C",
         source="Q_c is as 1 / (lambda nu), Stirling 2023, eqs 5.1 and 5.8",
     )
+
+
+def check(page: Page, lives: dict[str, Floats], winds: Winds) -> None:
+    """What does not depend on whose turbine it is."""
+    check_variants(page, lives)
     of_winds = by_wind(lives[EVENLY])
     weights = np.broadcast_to(Site(MEAN_WIND).shares(EDGES)[:, None], lives[EVENLY].shape)
     steps = years(lives[EVENLY], rotor_speed()[:, None])
@@ -185,10 +240,17 @@ def check(page: Page, lives: dict[str, Floats], winds: Winds) -> None:
         )
 
 
-def show(page: Page, lives: dict[str, Floats], winds: Winds) -> None:
-    """Figure 5.9, and the share of damage."""
+def show(
+    page: Page,
+    lives: dict[str, Floats],
+    winds: Winds,
+    speed: Floats | None = None,
+    printed: bool = True,
+) -> None:
+    """Figure 5.9, and the share of damage; of rotor speeds (winds,) [1/min], or the thesis's."""
     page.section("Life by wind speed")
-    found = {name: by_wind(one) for name, one in lives.items()}
+    turning = (rotor_speed() if speed is None else speed)[:, None]
+    found = {name: by_wind(one, turning) for name, one in lives.items()}
     ends = [SPEEDS[0], SPEEDS[-1]]
     colors = {EVENLY: "#0072b2", RISEN: "#d55e00", PROFILED: "#009e73", FAIR: "#999999"}
     traces = [
@@ -197,7 +259,10 @@ def show(page: Page, lives: dict[str, Floats], winds: Winds) -> None:
     ]
     for name, years_there in zip((EVENLY, RISEN), THESIS, strict=True):
         site = at_site(found[name], MEAN_WIND)
-        for words, value, dash in (("site", site, "dash"), ("thesis, site", years_there, "dot")):
+        shown = [("site", site, "dash")]
+        if printed:
+            shown.append(("thesis, site", years_there, "dot"))
+        for words, value, dash in shown:
             line = {"color": colors[name], "dash": dash}
             traces.append(trace(f"{words}: {value:.2g} years", ends, [value, value], line=line))
     page.chart(
@@ -224,7 +289,7 @@ def show(page: Page, lives: dict[str, Floats], winds: Winds) -> None:
         {"time [%]": "time", "damage, f = 1 [%]": "damage"},
         axis="share [%]",
     )
-    error = float(scatter_of_seeds(lives[EVENLY], winds.seeds, MEAN_WIND))
+    error = float(scatter_of_seeds(lives[EVENLY], winds.seeds, MEAN_WIND, turning))
     page.data("standard error of the logarithm of life, of seeds [-]", error)
     page.text(
         f"{winds.seeds} histories of {winds.duration:g} s at each wind speed: their number alone "

@@ -7,6 +7,7 @@ from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
 from fe_drivetrain.elasticity.mesh import Mesh, write
 from fe_drivetrain.elasticity.solve import METHODS
 from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.report.suite.chosen import SETTING
 from fe_drivetrain.shafts.response import LOADS
 from fe_drivetrain.studies.scene_description import quick_scene
 from fe_drivetrain.studies.seat_stiffness import SeatStiffness, seat_stiffness
@@ -56,17 +57,38 @@ def scene_of(run: Run, page: Page, kind: str, coarsen: bool = True) -> Scene:
     if run.quick and coarsen:
         scene = quick_scene(scene)
     page.about(scene)
+    if SETTING in run.settings:
+        page.subject = scene.title
     return scene
 
 
+def is_changed(run: Run) -> bool:
+    """Whether the user has another scene than the thesis's, to which its numbers do not apply."""
+    own = {SETTING, *Scene.model_fields}
+    return any(key.partition(".")[0] in own for key in run.settings)
+
+
 def changed_scene(run: Run, kind: str) -> Scene:
-    """The library's scene of a kind with the user's changes, refused where closed forms end."""
+    """The library's scene of a kind, or that of the user, with the user's changes.
+
+    Raises
+    ------
+    InputError
+        The closed forms do not know it, or it has no shaft of sections.
+    """
     changes = {
         key: value
         for key, value in run.settings.items()
         if key.partition(".")[0] in Scene.model_fields
     }
-    scene = change_scene(library_scene(f"main_bearing_{kind}"), changes)
+    default = library_scene(f"main_bearing_{kind}")
+    given = run.drivetrain(default).drivetrain if SETTING in run.settings else default
+    if not isinstance(given, Scene):
+        raise InputError(
+            f"drivetrain {given.title!r} does not state shaft.sections and bearing_units, which "
+            "the main-bearing cases solve: give these, or run fe-drivetrain modes"
+        )
+    scene = change_scene(given, changes)
     count = len(scene.bearing_units)
     if scene.nose is not None or count != 1:
         has = "a nose" if scene.nose is not None else f"{count} bearing units"

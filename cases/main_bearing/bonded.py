@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
+from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, calibrated, shown
 from fe_drivetrain.common import (
     FORCES,
     Floats,
@@ -20,6 +20,7 @@ from fe_drivetrain.common import (
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.report import Image, Solid, Text
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.beam import main_bearing_beam
@@ -104,6 +105,8 @@ class Worked:
         Pictures of the model.
     torsional, on_matrix, pinned : Floats
         (6, 6) reactions of three beams to unit hub loads.
+    other : calibrated.Housed or None
+        The bearing in the calibrated housing; None of a scene of the user's.
     """
 
     solved: Assembly
@@ -113,6 +116,7 @@ class Worked:
     torsional: Floats
     on_matrix: Floats
     pinned: Floats
+    other: calibrated.Housed | None
 
     @property
     def reaction(self) -> Floats:
@@ -145,17 +149,19 @@ class Worked:
 def solved_with_beams(run: Run, scene: Scene) -> Worked:
     """Solve the scene with and without its gearbox, on coarser meshes, too, and three beams."""
     main_bearing_beam(scene)  # refuses before the work what it cannot stand for
-    with run.side_by_side(4) as jobs:
+    with run.side_by_side(5) as jobs:
         mesh = timed_mesh(run, scene, "bonded")
         solving = jobs.start(bearing_scenes.solve_and_write, scene, "bonded", mesh, "mesh")
         tilting = jobs.start(bearing_scenes.solve_seat, scene, "without gearbox", mesh)
         coarser = bands.start(jobs, scene, "bonded", tilted=True)
+        coming = calibrated.start(run, jobs)
         solved = solving.result()
         load_factors = np.array([0, 0, -1e5, 0, 0, 0, 0, 0, 0, 0], dtype=float)
         drawing = jobs.start(shown.pictures_of, solved, load_factors, "Fz = -100 kN at the hub")
         tilt = tilting.result()
         pictures = drawing.result()
         series = coarser.below(bands.of_solved(solved) | bands.of_tilt(tilt))
+        other = None if coming is None else coming.result()
     beams = closed_form_models(scene, {}, tilt)
     return Worked(
         solved,
@@ -165,6 +171,7 @@ def solved_with_beams(run: Run, scene: Scene) -> Worked:
         torsional=beams[SPRUNG.format("averaged seat")].matrix.T,
         on_matrix=beams[SIXBYSIX].matrix.T,
         pinned=beams[PINNED].matrix.T,
+        other=other,
     )
 
 
@@ -207,13 +214,13 @@ def answer(page: Page, work: Worked) -> None:
     page.found(f"{force} [N/N]", float(reaction[2, 2]), work.forces[0]["± FE"])
     page.found(f"{spring} [%]", spring_error)
     up = page.judged(force, "force on the bearing, per force up at the hub")
+    verdict, beside = verdict_of(page, work, up, spring_error)
     page.answer(
         "How much of a hub load does a bonded main bearing carry, and does a beam show it?",
-        f"A hub force of 1\u00a0kN up puts {value_text(up.value, 'kN', up.band, False)} on the "
-        f"bearing; a beam on K_R errs by {spring_error:.2g} %, a pinned beam by "
-        f"{100 * abs(work.pinned[2, 2] / up.value - 1):.2g} %.",
+        verdict,
         [
             up,
+            *beside,
             page.value(
                 "the same by a pinned beam [N/N]",
                 float(work.pinned[2, 2]),
@@ -247,6 +254,27 @@ def answer(page: Page, work: Worked) -> None:
             "Numerical uncertainty of these forces, from two coarser meshes: "
             f"{of_forces:.2g} %; of K_R {k_band:.2g} %."
         )
+
+
+def verdict_of(
+    page: Page, work: Worked, up: KeyFigure, spring_error: float
+) -> tuple[str, list[KeyFigure]]:
+    """What a hub force puts on the bearing, in words; the calibrated housing's beside it."""
+    pinned_error = 100 * abs(work.pinned[2, 2] / up.value - 1)
+    of_up = value_text(up.value, "kN", up.band, False)
+    if work.other is None:
+        return (
+            f"A hub force of 1\u00a0kN up puts {of_up} on the bearing; a beam on K_R errs by "
+            f"{spring_error:.2g} %, a pinned beam by {pinned_error:.2g} %.",
+            [],
+        )
+    there = calibrated.force_up(work.other)
+    of_pinned = 100 * abs(work.pinned[2, 2] / there - 1)
+    return (
+        f"1\u00a0kN up at the hub puts {of_up} on the bearing, {value_text(there, 'kN')} with the "
+        f"thesis's K_R; a pinned beam errs by {pinned_error:.2g} and {of_pinned:.2g} %.",
+        [page.value("the same in the calibrated housing [N/N]", there)],
+    )
 
 
 def reactions_section(page: Page, work: Worked) -> None:
@@ -333,6 +361,7 @@ def write_stiffness(run: Run, work: Worked) -> None:
     "Bonded main bearing: shares of bearing and gearbox, and what the beam leaves out",
     source="Stirling 2023, PhD thesis, sections 3.2 and 3.3 (DTRB), Table 3.1, Eq 3.18-3.19",
     settings={
+        "drivetrain": "FILE with one main bearing, or a name of the library (otherwise both)",
         "solver": "auto (or superlu, cholmod, pardiso, multigrid, schwarz, petsc, petsc-mumps)",
     },
     changes="scene",
@@ -347,6 +376,9 @@ def run(run: Run, page: Page) -> None:
     page.section("Model")
     page.add(*work.pictures)
     reactions_section(page, work)
+    if work.other is not None:
+        calibrated.check(page, work.other)
+        calibrated.section(page, calibrated.share_rows(work.solved, work.series, work.other))
     stiffness_section(page, work)
     shown.mesh_section(page, {"bonded": work.solved, "without gearbox": work.tilt.free})
     page.text(work.series.note())

@@ -16,6 +16,7 @@ from . import locking_bars as locking_bars
 from . import locking_solids as locking_solids
 from . import machine_rungs as machine_rungs
 from . import machine_shafts as machine_shafts
+from . import main_bearings as main_bearings
 from . import manufactured as manufactured
 from . import mathieu as mathieu
 from . import one_norm as one_norm
@@ -30,6 +31,7 @@ from . import rated_gears as rated_gears
 from . import rigid_ended_shafts as rigid_ended_shafts
 from . import ring_slices as ring_slices
 from . import ring_solids as ring_solids
+from . import rotor_imbalance as rotor_imbalance
 from . import shaft_ends as shaft_ends
 from . import shaft_theory as shaft_theory
 from . import slivers as slivers

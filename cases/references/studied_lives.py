@@ -251,9 +251,10 @@ def basic_lives(setup: Setup, deflections: Floats) -> Floats:
     return found["L"].reshape(deflections.shape[:-1])
 
 
-def rotor_speed() -> Floats:
-    """Rotor speed at each mean wind speed [1/min]."""
-    return np.array([Rotor().rotor_speed(v) * 30.0 / np.pi for v in SPEEDS])
+def rotor_speed(rotor: Rotor | None = None) -> Floats:
+    """Rotor speed at each mean wind speed [1/min], of the surrogate of 2 MW or another."""
+    turning = Rotor() if rotor is None else rotor
+    return np.array([turning.rotor_speed(v) * 30.0 / np.pi for v in SPEEDS])
 
 
 def by_wind(lives: Floats, speed: Floats | None = None) -> Floats:
@@ -276,12 +277,15 @@ def shares(of_winds: Floats, mean_wind: float) -> Floats:
     return 100.0 * weights / of_winds * at_site(of_winds, mean_wind)
 
 
-def scatter_of_seeds(lives: Floats, seeds: int, mean_wind: float | None = None) -> Floats:
+def scatter_of_seeds(
+    lives: Floats, seeds: int, mean_wind: float | None = None, speed: Floats | None = None
+) -> Floats:
     """Standard error of the logarithm of life, at each wind speed or at a site.
 
-    From lives (winds, steps) with each of the seeds left out in turn (Efron 1979).
+    From lives (winds, steps) with each of the seeds left out in turn (Efron 1979); ``speed`` is as
+    that of `by_wind`.
     """
     steps = lives.reshape(len(SPEEDS), seeds, -1)
-    left = [by_wind(np.delete(steps, k, 1).reshape(len(SPEEDS), -1)) for k in range(seeds)]
+    left = [by_wind(np.delete(steps, k, 1).reshape(len(SPEEDS), -1), speed) for k in range(seeds)]
     found = left if mean_wind is None else [at_site(one, mean_wind) for one in left]
     return np.asarray(np.sqrt((seeds - 1) * np.var(np.log(found), axis=0)))

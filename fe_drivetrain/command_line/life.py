@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import typer
@@ -34,7 +35,7 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
 
     check_result_folder(asked.folder)
     found = read_drivetrain(asked.scene, parse_settings(asked.set_ or ()))
-    from fe_drivetrain.command_line.life_files import write_life
+    from fe_drivetrain.command_line.life_files import SeriesFiles, write_life
     from fe_drivetrain.pages.life import show_life
     from fe_drivetrain.report.suite.case import Case
     from fe_drivetrain.report.suite.result_folders import run_case
@@ -45,6 +46,7 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
     options, place, events = asked.options(context), asked.place, asked.events
     check_events(found, events)
     files = recorded_files(asked.loads)
+    series = SeriesFiles(files)
     with show_steps() as report, scheduled_by(asked.scheduler):
         # before the run: a mistake leaves no trace in a folder of reports
         report("bearings")
@@ -56,10 +58,11 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
                 place,
                 events=events,
                 resume=asked.resume,
+                each=series.into(run.folder),
                 report=run.report,
             ),
             show_life,
-            write_life,
+            partial(write_life, series=series.written),
         )
         case = Case(
             f"life/{Path(asked.scene).stem}",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -128,6 +128,16 @@ class LifeRequest:
     every: Annotated[
         int, typer.Option("--every", metavar="COUNT", min=1, help="Use every n-th sample.")
     ] = LifeOptions.every
+    series: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--series",
+            metavar="NAME",
+            help="Write loads over time, a CSV for each file: 'raceways', or 'roller=21' for the "
+            "load of that place, counted from the right upward, looking downwind, beside them. May "
+            "be repeated.",
+        ),
+    ] = None
     weight: Annotated[
         bool,
         typer.Option("--weight/--no-weight", help="Whether gearbox and shaft have their weight."),
@@ -240,6 +250,7 @@ class LifeRequest:
             else parse_lubricant(self.gearbox_lubricant),
             gearbox_temperature=self.gearbox_temperature,
             gearbox_cleanliness=self.gearbox_cleanliness,
+            series=rollers_of(self.series),
             stated=tuple(name for name in ASSUMED if not left_out(context, name)),
         )
 
@@ -257,6 +268,33 @@ def parse_lubricant(text: str) -> str | tuple[float, float]:
     except ValueError:
         return text  # a grade, or refused with those that there are
     return at_40, at_100
+
+
+def rollers_of(texts: Sequence[str] | None) -> tuple[int, ...] | None:
+    """Rolling elements of ``--series``; none of raceways alone.
+
+    Parameters
+    ----------
+    texts : sequence of str or None
+        Words as typed; None where the option is not given.
+
+    Raises
+    ------
+    InputError
+        One is neither "raceways" nor a roller with its number.
+    """
+    if texts is None:
+        return None
+    found: list[int] = []
+    for text in texts:
+        name, _, number = (part.strip() for part in text.partition("="))
+        if text.strip() == "raceways":
+            continue
+        if name != "roller" or not (number.isascii() and number.isdigit()):
+            raise InputError(f"--series {text}: write raceways, or roller=21 with its number")
+        refuse_again("--series", f"roller={int(number)}", [f"roller={n}" for n in found])
+        found.append(int(number))
+    return tuple(found)
 
 
 def bearing_entries(texts: Iterable[str]) -> dict[str, str]:

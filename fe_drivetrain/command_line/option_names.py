@@ -56,6 +56,7 @@ OPTIONS: Mapping[str, str] = {
     "rings": "--rings",
     "riser": "--riser",
     "rotor_speed_rpm": "--rotor-speed",
+    "series": "--series",
     "site": "--site",
     "slices": "--slices",
     "slopes": "--slope",

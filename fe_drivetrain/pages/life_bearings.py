@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_drivetrain.bearing_life.life.roller_damage import KINDS
-from fe_drivetrain.pages.life_charts import along_rollers, damage_map, load_zone
+from fe_drivetrain.pages.life_charts import along_rollers, damage_map, load_zone, zones_by_wind
 from fe_drivetrain.report.charts import bars
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
-from fe_drivetrain.studies.life_sums import BearingLife, row_names
+from fe_drivetrain.studies.life_sums import BearingLife
 from fe_drivetrain.studies.life_tables import has_rollers, site_maps, wind_rows
-from fe_drivetrain.studies.rolling_bearings import rollers_in_words
+from fe_drivetrain.studies.rolling_bearings import rollers_in_words, row_names
 
 
 def winds(page: Page, life: BearingLife) -> None:
@@ -82,6 +82,9 @@ def places(page: Page, life: BearingLife, rings: Sequence[Record]) -> None:
     """
     seen, planet = life.bearing.seen, bool(life.bearing.planets)
     page.add(load_zone(life.name, life.rows, life.mean_load, life.peak_load, seen))
+    if len(life.by_wind) > 1:
+        for kind in ("mean", "largest"):
+            page.add(zones_by_wind(life.name, life.rows, life.by_wind, kind, seen))
     page.table(f"{life.name}: rows and rings", rings, list(rings[0])[1:])
     what = "damage by L10r at the site over wind and place of rollers"
     maps = [

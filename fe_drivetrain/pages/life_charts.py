@@ -11,7 +11,11 @@ from fe_drivetrain.bearing.geometry import RollerRow, Row, angles
 from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.report.charts import chart, heat_map, trace
 from fe_drivetrain.report.results import Chart
-from fe_drivetrain.studies.life_sums import row_names
+from fe_drivetrain.studies.life_sums import WindLoads
+from fe_drivetrain.studies.rolling_bearings import row_names
+
+SHOWN = 8
+"""Winds of a polar picture, at most: the table has all."""
 
 
 def load_zone(name: str, rows: Sequence[Row], mean: Floats, peak: Floats, seen: str) -> Chart:
@@ -53,6 +57,61 @@ def load_zone(name: str, rows: Sequence[Row], mean: Floats, peak: Floats, seen: 
         caption=f"{name}: load of the places of its rollers, {seen} [kN]",
         figure={"data": data, "layout": layout},
     )
+
+
+def zones_by_wind(
+    name: str, rows: Sequence[Row], by_wind: Sequence[WindLoads], what: str, seen: str
+) -> Chart:
+    """Load of the rollers' places at each wind, the rows side by side.
+
+    Parameters
+    ----------
+    name : str
+        Of the bearing.
+    rows : sequence of Row
+        Of the bearing.
+    by_wind : sequence of WindLoads
+        The winds, of which `SHOWN` are drawn at most, the first and the last among them.
+    what : {"mean", "largest"}
+        Which load.
+    seen : str
+        How places are counted, as `OneBearing.seen`.
+
+    Returns
+    -------
+    chart : Chart
+        In polar coordinates.
+    """
+    count = min(len(by_wind), SHOWN)
+    chosen = [by_wind[i] for i in np.linspace(0, len(by_wind) - 1, count).round().astype(int)]
+    data: list[Any] = []
+    layout: dict[str, Any] = {"height": 520}
+    words = row_names(len(rows))
+    for r, (row, word) in enumerate(zip(rows, words, strict=True)):
+        degrees, polar = np.degrees(angles(row)), f"polar{r + 1 if r else ''}"
+        for i, at in enumerate(chosen):
+            values = 1e-3 * (at.mean if what == "mean" else at.peak)[r]
+            hue = 240.0 * (1.0 - i / max(count - 1, 1))
+            data.append(
+                {
+                    "type": "scatterpolar",
+                    "mode": "lines",
+                    "subplot": polar,
+                    "name": f"{at.wind:g} m/s",
+                    "legendgroup": f"{at.wind:g}",
+                    "showlegend": r == 0,
+                    "theta": rounded(np.append(degrees, degrees[0] + 360.0), 5),
+                    "r": rounded(np.append(values, values[0]), 5),
+                    "line": {"color": f"hsl({hue:.0f}, 75%, 42%)"},
+                }
+            )
+        gap = 0.08 if len(rows) > 1 else 0.0
+        domain = [r / len(rows) + gap * (r > 0), (r + 1) / len(rows) - gap * (r + 1 < len(rows))]
+        axis = {"title": {"text": f"{word} [kN]"}, "angle": 45}
+        layout[polar] = {"domain": {"x": domain}, "radialaxis": axis}
+    sides = " left, ".join(words) + " right" if len(words) == 2 else words[0]
+    caption = f"{name}: {what} load of the places of its rollers by wind, {sides}, {seen} [kN]"
+    return Chart(caption=caption, figure={"data": data, "layout": layout})
 
 
 def damage_map(

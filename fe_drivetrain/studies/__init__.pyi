@@ -22,6 +22,7 @@ from .level_advice import AdviseResult as AdviseResult
 from .level_advice import advise as advise
 from .level_errors import LevelErrors as LevelErrors
 from .life_options import LifeOptions as LifeOptions
+from .life_series import LoadSeries as LoadSeries
 from .load_digest import LoadOptions as LoadOptions
 from .load_facts import LoadFacts as LoadFacts
 from .load_facts import hub_load_rows as hub_load_rows

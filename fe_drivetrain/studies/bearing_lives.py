@@ -7,7 +7,7 @@ number.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import islice
 from pathlib import Path
@@ -48,6 +48,7 @@ from fe_drivetrain.studies.life_events import (
 )
 from fe_drivetrain.studies.life_findings import answers, assumptions, cautions, checks
 from fe_drivetrain.studies.life_options import LifeOptions
+from fe_drivetrain.studies.life_series import LoadSeries, require_rollers, series_columns
 from fe_drivetrain.studies.life_sums import BearingLife, BearingSums
 from fe_drivetrain.studies.life_tables import limit_rows, long_tables, result_tables
 from fe_drivetrain.studies.result import Result
@@ -64,8 +65,8 @@ class LifeResult(Result):
     """Lives of bearings, what takes them, and where the methods end.
 
     ``result.bearings["front"].years["L10mr"]`` is a life. Tables by file, wind, place of the
-    rollers and lamina are those of `to_frame` with "files", "winds", "places" and "laminae"; they
-    are in the JSON, too.
+    rollers, wind and place, and lamina are those of `to_frame` with "files", "winds", "places",
+    "rollers" and "laminae"; they are in the JSON, too.
 
     Attributes
     ----------
@@ -134,6 +135,7 @@ def life(
     *,
     events: Mapping[str, float] | None = None,
     resume: bool = False,
+    each: Callable[[LoadSeries], None] | None = None,
     report: Progress = silent,
 ) -> LifeResult:
     """Rating lives of a drivetrain's rolling bearings under hub loads.
@@ -154,6 +156,9 @@ def life(
         ``{"stop": 700}``.
     resume : bool
         Take what an earlier run of the same program has done with the same files and options.
+    each : callable, optional
+        Called with the `LoadSeries` of each bearing under each file, where
+        ``LifeOptions(series=...)`` asks for them; none is kept.
     report : Progress
         Called with the name of each step as it begins.
 
@@ -161,7 +166,7 @@ def life(
     ------
     InputError
         The drivetrain has no rolling bearing or an unknown one, a file cannot be read, a site is
-        given and files have no wind speed, or an event is unknown.
+        given and files have no wind speed, or an event or a rolling element is unknown.
     """
     asked = LifeOptions() if options is None else options
     paths = recorded_files(files)
@@ -172,6 +177,7 @@ def life(
         site,
         events=events,
         resume=resume,
+        each=each,
         report=report,
     )
 
@@ -200,7 +206,8 @@ class DrivetrainBearings:
     Raises
     ------
     InputError
-        The drivetrain has no rolling bearing or an unknown one.
+        The drivetrain has no rolling bearing or an unknown one, or no bearing has a rolling element
+        whose load is asked for.
     """
 
     def __init__(self, drivetrain: Drivetrain, options: LifeOptions) -> None:
@@ -216,6 +223,8 @@ class DrivetrainBearings:
             assert isinstance(self.drivetrain, Scene)
             self.machine = MachineBearings(lacks=found)
             self.bearings = bearings_of(self.drivetrain, options.choices)
+        if options.series is not None:
+            require_rollers(self.bearings, options.series)
 
     def _all_bearings(self, machine: Machine) -> list[OneBearing]:
         """Main bearings on their rollers where all have an entry, and those by statics."""
@@ -249,6 +258,7 @@ def lives_under(
     *,
     events: Mapping[str, float] | None = None,
     resume: bool = False,
+    each: Callable[[LoadSeries], None] | None = None,
     report: Progress = silent,
 ) -> LifeResult:
     """Rating lives of bearings that are ready, under hub loads; see `life`.
@@ -265,6 +275,8 @@ def lives_under(
         Events that come beside the files, and how often in a year.
     resume : bool
         Take what an earlier run has done.
+    each : callable, optional
+        Called with the `LoadSeries` of each bearing under each file, where they are asked for.
     report : Progress
         Called with the name of each step as it begins.
 
@@ -284,7 +296,7 @@ def lives_under(
         with steps.step("events"):
             happened = life_events(drivetrain.drivetrain, asked, events, report)
     with steps.step("load steps"):
-        lives = list(_lives(drivetrain, files, site, resume, report))
+        lives = list(_lives(drivetrain, files, site, resume, each, report))
     machine = drivetrain.machine
     answers(found, lives, asked.rules, site)
     say_levels(found, lives, machine)
@@ -312,13 +324,15 @@ def _lives(
     files: Sequence[Path],
     site: Site | None,
     resume: bool,
+    each: Callable[[LoadSeries], None] | None,
     report: Progress,
 ) -> Iterator[BearingLife]:
     """Lives of bearings one after the other; digests of files are added up as they come."""
     options, of = drivetrain.options, drivetrain.drivetrain
     rules, choices, reading = options.rules, options.choices, options.reading
+    rollers = None if each is None else options.series
     items = [
-        (file, one, rules, reading, of, choices, resume)
+        (file, one, rules, reading, of, choices, resume, rollers)
         for one in drivetrain.bearings
         for file in files
     ]
@@ -327,6 +341,9 @@ def _lives(
         sums = BearingSums(one, site)
         for file, digest in zip(files, islice(made, len(files)), strict=True):
             sums.add(file, digest)
+            if each is not None and rollers is not None and len(digest.series):
+                columns = series_columns(one, rollers)
+                each(LoadSeries(one.name, file, columns, digest.series[:, 0], digest.series[:, 1:]))
         yield sums.life(rules, choices)
 
 

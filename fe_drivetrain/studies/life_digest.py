@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,7 @@ from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.response.cached import whole_content
 from fe_drivetrain.shafts.response.entering import Entered, entering
 from fe_drivetrain.studies.life_assumptions import ratios, what_ifs
+from fe_drivetrain.studies.life_series import has_series, series_values
 from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 from fe_drivetrain.studies.unused import RPM, own_speeds, require_samples
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
@@ -99,6 +101,9 @@ class LifeDigest:
         Damage by L10 at each level of `OneBearing.levels`, over that of the load path.
     flanges : float
         Largest axial force that rolling elements do not carry [N].
+    series : Floats
+        Time [s], and the columns of `life_series.series_columns` over it; empty where none is
+        asked for.
     """
 
     damage: Damage
@@ -115,6 +120,7 @@ class LifeDigest:
     ratios: Floats
     levels: Floats
     flanges: float
+    series: Floats
 
 
 def content(
@@ -124,6 +130,7 @@ def content(
     reading: Reading,
     drivetrain: Drivetrain,
     choices: Choices,
+    series: Sequence[int] | None = None,
 ) -> dict[str, Any]:
     """All that a digest depends on.
 
@@ -141,6 +148,8 @@ def content(
         The drivetrain.
     choices : Choices
         Choices of the model.
+    series : sequence of int, optional
+        Rolling elements whose loads are kept over time.
 
     Returns
     -------
@@ -159,6 +168,7 @@ def content(
         "reading": [reading.skip, reading.every, reading.rotor_speed],
         "scene": whole_content(drivetrain) if isinstance(drivetrain, Scene) else None,
         "choices": repr(choices),
+        "series": None if series is None else list(series),
     }
 
 
@@ -170,6 +180,7 @@ def digest(
     drivetrain: Drivetrain,
     choices: Choices,
     report: Progress = silent,
+    series: Sequence[int] | None = None,
 ) -> LifeDigest:
     """Damage, load zone and pressures of a bearing under a file.
 
@@ -189,6 +200,9 @@ def digest(
         Choices of the model.
     report : Progress
         Told how far it is.
+    series : sequence of int, optional
+        Rolling elements whose loads are kept over time, beside those of raceways; None keeps no
+        load over time, and that of a planet's bearing never is.
 
     Returns
     -------
@@ -210,7 +224,7 @@ def digest(
     turns, own = speed * one.path.speed_ratio, one.rules(rules)
     check_speed(one.rated, turns)
     n, step = len(loads), history.step * reading.every
-    sums = _Sums(one)
+    sums = _Sums(one, series if has_series(one) else None)
     chunk = int(np.clip(-(-n // WINDOWS), 1, MAXIMUM))
     done = 0
     for steps in one.path.steps(loads, speed, step, chunk):
@@ -228,6 +242,7 @@ def digest(
         ratios=changed,
         levels=levels,
         flanges=flanges,
+        series=sums.over_time(history.time[:: reading.every]),
     )
 
 
@@ -315,6 +330,7 @@ def kept_digest(
     drivetrain: Drivetrain,
     choices: Choices,
     resume: bool,
+    series: Sequence[int] | None = None,
 ) -> LifeDigest:
     """The digest of a bearing under a file, or what an earlier run kept where that is asked for.
 
@@ -336,11 +352,13 @@ def kept_digest(
         Choices of the model.
     resume : bool
         Take what is kept.
+    series : sequence of int, optional
+        Rolling elements whose loads are kept over time.
     """
-    cache, key = user_cache(), content(file, one, rules, reading, drivetrain, choices)
+    cache, key = user_cache(), content(file, one, rules, reading, drivetrain, choices, series)
     kept = cache.load_record("life-digests", key, LifeDigest) if resume else None
     if kept is None:
-        kept = digest(file, one, rules, reading, drivetrain, choices, report)
+        kept = digest(file, one, rules, reading, drivetrain, choices, report, series)
         cache.keep_record("life-digests", key, kept)
     return kept
 
@@ -348,8 +366,9 @@ def kept_digest(
 class _Sums:
     """Sums over chunks of steps."""
 
-    def __init__(self, one: OneBearing) -> None:
+    def __init__(self, one: OneBearing, series: Sequence[int] | None) -> None:
         self.one = one
+        self.series = series
         self.damage: Damage | None = None
         self.load_seconds = np.zeros(0)
         self.peak = np.zeros(0)
@@ -357,12 +376,19 @@ class _Sums:
         self.windows: list[Floats] = []
         self.worst = np.zeros(0)
         self._weights: list[Floats] = []
+        self._series: list[Floats] = []
 
     @property
     def weights(self) -> Floats:
         """(n,) of all steps of the hub so far, about in proportion to their damage."""
         each = np.concatenate(self._weights).reshape(-1, self.one.path.repeats)
         return np.asarray(each.sum(axis=1))
+
+    def over_time(self, time: Floats) -> Floats:
+        """(n, columns) time [s] and loads of all steps so far; empty where none is asked for."""
+        if self.series is None:
+            return np.zeros((0, 0))
+        return np.column_stack([time, np.concatenate(self._series)])
 
     def add(self, steps: Steps, damage: Damage, time: float) -> None:
         rollers = [q.sum(axis=2) for q in steps.laminae]
@@ -379,6 +405,8 @@ class _Sums:
         turns = np.abs(steps.speed_rpm) * steps.seconds
         self._weights.append(turns * np.sum([(Q**4).mean(axis=1) for Q in rollers], axis=0))
         self.times.append(time)
+        if self.series is not None:
+            self._series.append(series_values(self.one, self.series, steps))
         self.windows.append(
             np.stack([damage.of_positions(r).sum(axis=0) for r in range(len(rollers))])
         )
@@ -408,6 +436,7 @@ class _Sums:
             np.zeros(0),
             np.zeros(0),
             0.0,
+            np.zeros((0, 0)),
         )
 
 

@@ -19,8 +19,8 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.life_assumptions import in_words, in_years
 from fe_drivetrain.studies.life_options import LifeOptions
-from fe_drivetrain.studies.life_sums import BearingLife, row_names, scatter
-from fe_drivetrain.studies.rolling_bearings import rollers_in_words
+from fe_drivetrain.studies.life_sums import BearingLife, scatter
+from fe_drivetrain.studies.rolling_bearings import rollers_in_words, row_names
 from fe_drivetrain.studies.unused import choices_not_used, speed_not_used
 from fe_drivetrain.turbine_loads.histories.sites import Site
 from fe_drivetrain.turbine_loads.hub_loads.recorded import short_name

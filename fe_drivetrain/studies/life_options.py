@@ -70,6 +70,9 @@ class LifeOptions(HistoryOptions):
         operation, or 60.
     gearbox_cleanliness : str or None
         Code of ISO 4406 of that oil, which circulates through a filter; None takes -/17/14.
+    series : Sequence[int] or None
+        Rolling elements whose loads over time the argument ``each`` of `life` gets, beside those of
+        raceways: 1 is the first place from the right upward, looking downwind. None gives none.
     stated : tuple of str
         Options of `ASSUMED` whose defaults are meant. A default that is not named here is an
         assumption: what another value would do to the life is computed, too.
@@ -98,6 +101,7 @@ class LifeOptions(HistoryOptions):
     gearbox_lubricant: str | tuple[float, float] | None = None
     gearbox_temperature: float | None = None
     gearbox_cleanliness: str | None = None
+    series: Sequence[int] | None = None
     stated: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

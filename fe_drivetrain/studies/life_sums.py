@@ -88,6 +88,34 @@ class DamageOverTime:
 
 
 @dataclass(frozen=True, eq=False)
+class WindLoads:
+    """Loads of the places of rolling elements in all files of one wind.
+
+    Attributes
+    ----------
+    wind : float
+        Wind speed for which the files stand [m/s].
+    seconds : float
+        How long they last together.
+    mean, peak : ndarray, (rows, elements)
+        Mean over that time, and largest [N].
+    """
+
+    wind: float
+    seconds: float
+    mean: Floats
+    peak: Floats
+
+    __repr__ = short_repr
+
+    def __add__(self, other: WindLoads) -> WindLoads:
+        """Both together; they are of the same wind."""
+        seconds = self.seconds + other.seconds
+        mean = (self.seconds * self.mean + other.seconds * other.mean) / seconds
+        return WindLoads(self.wind, seconds, mean, np.maximum(self.peak, other.peak))
+
+
+@dataclass(frozen=True, eq=False)
 class BearingLife:
     """Life of one bearing, what takes it, and where.
 
@@ -112,6 +140,8 @@ class BearingLife:
         The file with the highest rate of damage by L10r.
     assumptions : tuple of Assumption
         What was not stated, and what it does to L10mr.
+    by_wind : tuple of WindLoads
+        Loads of each place by wind, the weakest first; empty where a file has no wind speed.
     levels : Mapping[str, float]
         Constant load of the same L10 at each level of the drivetrain's statics over that of the
         level taken; none of a bearing whose rollers are in equilibrium with the shaft.
@@ -127,6 +157,7 @@ class BearingLife:
     pressures: Floats
     worst: DamageOverTime
     assumptions: tuple[Assumption, ...]
+    by_wind: tuple[WindLoads, ...]
     levels: Mapping[str, float]
 
     def __repr__(self) -> str:
@@ -191,6 +222,7 @@ class BearingSums:
         self._peak: Floats | None = None
         self._pressures = np.zeros(0)
         self._worst: DamageOverTime | None = None
+        self._winds: dict[float, WindLoads] = {}
 
     def add(self, file: Path, digest: LifeDigest) -> None:
         """Add the digest of a file."""
@@ -204,6 +236,11 @@ class BearingSums:
         else:
             self._peak = np.maximum(self._peak, digest.peak_load)
             self._pressures = worse(self._pressures, digest.worst)
+        loads = WindLoads(
+            rounded_wind(digest.wind), damage.seconds, digest.mean_load, digest.peak_load
+        )
+        known = self._winds.get(loads.wind)
+        self._winds[loads.wind] = loads if known is None else known + loads
         rate = damage.totals["L10r"] / damage.seconds
         if self._worst is None or rate > self._worst.rate:
             self._worst = DamageOverTime(file, rate, digest.times, digest.over_time)
@@ -262,6 +299,9 @@ class BearingSums:
                 Assumption(other.assumed, other.instead, self._years_with(i))
                 for i, other in enumerate(ifs)
             ),
+            tuple(self._winds[wind] for wind in sorted(self._winds))
+            if np.isfinite(list(self._winds)).all()
+            else (),
             {
                 name: self._load_at(i, damage.totals["L10"])
                 for i, name in enumerate(self._bearing.levels)
@@ -334,8 +374,3 @@ def scatter(life: BearingLife, kind: str = "L10mr") -> float | None:
     mean = float(site.shares @ [np.mean(one) for one in each])
     errors = site.shares * [np.std(one, ddof=1) / np.sqrt(len(one)) for one in each]
     return 2.0 * float(np.linalg.norm(errors)) / mean * site.years[kind] if mean else None
-
-
-def row_names(count: int) -> list[str]:
-    """What rows are called, upwind first."""
-    return ["row"] if count == 1 else ["upwind row", "downwind row"][:count]

@@ -13,7 +13,8 @@ from fe_drivetrain.bearing_life.life.roller_damage import KINDS
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.gearbox_bearings import MachineBearings
-from fe_drivetrain.studies.life_sums import BearingLife, row_names
+from fe_drivetrain.studies.life_sums import BearingLife
+from fe_drivetrain.studies.rolling_bearings import row_names
 from fe_drivetrain.turbine_loads.histories.sites import HOURS_A_YEAR
 from fe_drivetrain.turbine_loads.hub_loads.recorded import short_name
 
@@ -177,6 +178,27 @@ def place_rows(life: BearingLife) -> list[Record]:
     return rows
 
 
+def roller_rows(life: BearingLife) -> list[Record]:
+    """Mean and largest load of each place of the rolling elements by wind."""
+    rows: list[Record] = []
+    for at in life.by_wind:
+        for r, (row, word) in enumerate(zip(life.rows, row_names(len(life.rows)), strict=True)):
+            places = np.degrees(angles(row)) % 360.0
+            rows += [
+                {
+                    "bearing": life.name,
+                    "wind [m/s]": at.wind,
+                    "row": word,
+                    "element": j + 1,
+                    "place [deg]": float(places[j]),
+                    "mean load [kN]": 1e-3 * float(at.mean[r, j]),
+                    "max load [kN]": 1e-3 * float(at.peak[r, j]),
+                }
+                for j in range(len(places))
+            ]
+    return rows
+
+
 def lamina_rows(life: BearingLife) -> list[Record]:
     """Damage of each lamina of rollers; none of balls."""
     if not has_rollers(life):
@@ -324,5 +346,6 @@ def long_tables(lives: Sequence[BearingLife]) -> dict[str, list[Record]]:
         "files": file_rows(lives),
         "winds": [row for life in lives for row in wind_rows(life)],
         "places": [row for life in lives for row in place_rows(life)],
+        "rollers": [row for life in lives for row in roller_rows(life)],
         "laminae": [row for life in lives for row in lamina_rows(life)],
     }

@@ -347,3 +347,8 @@ def _stiffness(support: str | float) -> float | None:
             "N m/rad, as 145e6"
         )
     return value
+
+
+def row_names(count: int) -> list[str]:
+    """What rows are called, upwind first."""
+    return ["row"] if count == 1 else ["upwind row", "downwind row"][:count]

@@ -155,7 +155,7 @@ def test_defaults_that_are_shown_are_those_that_are_used():
                 compared.add((name, key))
                 if words.startswith("CORES"):
                     full = quick = None
-                if words.startswith(("FILE", "NUMBER")):
+                if words.startswith(("FILE", "NAME", "NUMBER")):
                     continue
                 shown = said(words)
                 assert shown[:2] == (full, quick), (name, key)
@@ -172,7 +172,8 @@ def test_defaults_that_are_shown_are_those_that_are_used():
                     *peer_settings.RANGES.get(key, (None, None))[:2],
                 ), key
             else:
-                assert words.startswith(("FILE", "NUMBER")) or (name, key) in compared, (name, key)
+                shown = words.startswith(("FILE", "NAME", "NUMBER"))
+                assert shown or (name, key) in compared, (name, key)
             if key == "solver":
                 assert re.findall(r"[a-z-]+", words.replace("(or", "")) == list(METHODS)
     coverage = importlib.import_module("fe_drivetrain.cases.verification.band_coverage")
