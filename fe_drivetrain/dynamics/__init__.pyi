@@ -133,6 +133,7 @@ from .bodies.system import with_stiffness as with_stiffness
 from .bodies.system import without_massless as without_massless
 from .bodies.torsional_table import gear_table as gear_table
 from .time.base_motion import BaseMotion as BaseMotion
+from .time.base_motion import base_acceleration as base_acceleration
 from .time.base_motion import base_motion as base_motion
 from .time.base_motion import on_base as on_base
 from .time.base_motion import read_base_motion as read_base_motion
