@@ -149,6 +149,7 @@ from .time.motion import Braking as Braking
 from .time.motion import Motion as Motion
 from .time.motion import State as State
 from .time.motion import StepHistory as StepHistory
+from .time.parametric_growth import parametric_growth as parametric_growth
 from .time.rolling_bearings import RollingBearings as RollingBearings
 from .time.rolling_bearings import rolling_bearings as rolling_bearings
 from .time.schemes import AVERAGE as AVERAGE
