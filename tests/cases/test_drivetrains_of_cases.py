@@ -327,6 +327,9 @@ OF_NO_OTHER = {
         "of a claim of Park et al., that stiffness goes by angle, on their own drivetrain": (
             "dynamics/park_by_angle",
         ),
+        "of words of Park et al. on backlash, in their figures: `transient --backlash` takes any": (
+            "dynamics/park_backlash",
+        ),
         "of what a thesis prints of its drivetrain: values and sentences are held to its data": (
             "drivetrain/drivetrains_a_b_c",
         ),
