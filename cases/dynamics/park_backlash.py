@@ -55,7 +55,7 @@ GAPS = (PULLS, 1e-6, GAP, 4e-4)
 LARGEST, LEAST = "largest force of a mesh over static", "least force of a mesh over static"
 APART, BACK = "teeth apart [% of time]", "on the other flank [% of time]"
 TURNED = "eccentric rotor"
-STRONG = "stop, brake {:g} times the torque"
+STRONG = "stop by a brake of {:g} times the torque"
 MILD = STRONG.format(BRAKE)
 WAVES = "Sun-planet force in a start, over the static one of operation, with and without backlash"
 

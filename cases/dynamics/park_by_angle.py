@@ -302,7 +302,8 @@ def torsional(page: Page, flat: System, phases: Iterable[float], dt: float) -> b
             f"forces stay below {UNBOUND:g} times the static ones here."
             if bounded
             else f"by angle, forces grow past {UNBOUND:g} times the static ones, or do not "
-            "converge. Teeth that part, which a linear spring cannot, would limit them."
+            "converge; teeth that part limit them with some backlash and not with other "
+            "(dynamics/park_backlash)."
         )
     )
     return bounded
@@ -380,7 +381,7 @@ def answer(page: Page, found: dict[str, Effect], band: float, bounded: bool, str
             *(
                 [
                     f"From a brake of {strong:g} times the torque of operation, forces by angle "
-                    "have no bound: meshes are linear springs, as in the source."
+                    "have no bound, nor with backlash (dynamics/park_backlash)."
                 ]
                 if np.isfinite(strong)
                 else []
