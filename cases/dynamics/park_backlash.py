@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.park_by_angle import (
+from fe_drivetrain.cases.dynamics.park_events import (
     BRAKE,
     DRIFT,
     HARMONICS,
@@ -46,6 +46,7 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.procedure.steady_running import wound_up
 from fe_drivetrain.report import trace
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
@@ -314,8 +315,7 @@ def answer(
     loose, still = (
         [name for name, one in of.items() if not one.bounded] for of in (without, with_gap)
     )
-    mild, rotor = with_gap[MILD].row, changes[TURNED]
-    start, backlash = with_gap["start"].row, f"{1e3 * GAP:g}\u00a0mm of backlash"
+    backlash = f"{1e3 * GAP:g}\u00a0mm of backlash"
     highest = max(float(one.row[LARGEST]) for one in with_gap.values() if one.bounded)
     page.answer(
         "Does backlash bound the mesh forces of Park et al. in starts and stops?",
@@ -326,33 +326,7 @@ def answer(
             else f"Yes: with {backlash} forces stay below {formatted(highest, 2)} of static, "
             + ("which have no bound without it." if loose else "and have a bound without it, too.")
         ),
-        [
-            page.value(
-                f"{MILD}: largest force over static, with backlash",
-                mild[LARGEST],
-                beside=without[MILD].row[LARGEST],
-                by="springs that pull",
-            ),
-            page.value("start: largest force over static, with backlash", start[LARGEST], band),
-            page.value(
-                "start: teeth apart [% of time]",
-                start[APART],
-                beside=without["start"].row[APART],
-                by="springs that pull",
-            ),
-            page.value(
-                "change of mesh forces by an eccentric rotor, with backlash [%]",
-                rotor[GAP],
-                beside=rotor[PULLS],
-                by="springs that pull",
-            ),
-            page.value(
-                "change of mesh forces by the nacelle's force, with backlash [%]",
-                changes["nacelle's force"][GAP],
-                beside=changes["nacelle's force"][PULLS],
-                by="springs that pull",
-            ),
-        ],
+        key_figures(page, with_gap, without, changes, band),
         WAVES,
         [
             "That teeth are loaded though they are apart is the pull of linear springs: with "
@@ -368,3 +342,41 @@ def answer(
             "Backlash is not printed, and is equal in all meshes here.",
         ],
     )
+
+
+def key_figures(
+    page: Page,
+    with_gap: dict[str, Forces],
+    without: dict[str, Forces],
+    changes: dict[str, dict[float, float]],
+    band: float,
+) -> list[KeyFigure]:
+    """Forces and times with backlash beside those of springs that pull."""
+    mild, start, rotor = with_gap[MILD].row, with_gap["start"].row, changes[TURNED]
+    return [
+        page.value(
+            f"{MILD}: largest force over static, with backlash",
+            mild[LARGEST],
+            beside=without[MILD].row[LARGEST],
+            by="springs that pull",
+        ),
+        page.value("start: largest force over static, with backlash", start[LARGEST], band),
+        page.value(
+            "start: teeth apart [% of time]",
+            start[APART],
+            beside=without["start"].row[APART],
+            by="springs that pull",
+        ),
+        page.value(
+            "change of mesh forces by an eccentric rotor, with backlash [%]",
+            rotor[GAP],
+            beside=rotor[PULLS],
+            by="springs that pull",
+        ),
+        page.value(
+            "change of mesh forces by the nacelle's force, with backlash [%]",
+            changes["nacelle's force"][GAP],
+            beside=changes["nacelle's force"][PULLS],
+            by="springs that pull",
+        ),
+    ]
