@@ -283,7 +283,9 @@ def show(page: Page, of: Swept, found: dict[Point, Found], rows: Sequence[Record
 def growth_map(caption: str, bearings: Sequence[float], speeds: Sequence[float], z: Floats) -> Any:
     """Growth over bearings and speed; what does not grow stays empty."""
     names = [f"{factor:g}" for factor in bearings], [f"{speed:g}" for speed in speeds]
-    return heat_map(caption, *names, np.where(z > GROWS, z, np.nan), (OVER, SPEEDS, RATE))
+    each = {"type": "category"}
+    titles = (OVER, SPEEDS, "growth [1/s]")
+    return heat_map(caption, *names, np.where(z > GROWS, z, np.nan), titles, xaxis=each, yaxis=each)
 
 
 def safe_bearings(found: dict[Point, Found]) -> float | None:
