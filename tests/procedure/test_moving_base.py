@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hub_load_tables import TIME, openfast_text
 from numpy.testing import assert_allclose
 from scipy.integrate import trapezoid
 from scipy.interpolate import CubicSpline
@@ -122,6 +123,23 @@ def test_units_signs_tilt_place_and_means(tmp_path: Path) -> None:
     assert not found.accelerations[:, [1, 3, 5]].any()
     assert found.turns
     assert found.read.startswith("-fore [m/s^2], up [m/s^2], pitch [deg/s^2], turned")
+
+
+def test_of_openfast_the_sensor_goes_before_the_tower_and_its_displacement(tmp_path: Path) -> None:
+    swing = np.sin(5.0 * TIME)
+    sensor = {"NcIMUTAxs": ("m/s^2", swing), "NcIMURAys": ("deg/s^2", 2.0 * swing)}
+    tower = {"YawBrTAxp": ("m/s^2", 3.0 * swing), "YawBrTDxp": ("m", swing)}
+    file = openfast_text(tmp_path / "a.out", columns=tower | sensor)
+    found = read_base_history(file, reading=KEPT).accelerations
+    assert_allclose(found[:, 0], swing, atol=1e-8)
+    assert_allclose(found[:, 4], np.radians(2.0 * swing), atol=1e-8)
+    gone = openfast_text(tmp_path / "b.out", {n: "INVALID" for n in sensor}, columns=tower | sensor)
+    assert_allclose(read_base_history(gone, reading=KEPT).accelerations[:, 0], 3 * swing, atol=1e-8)
+    last = openfast_text(tmp_path / "c.out", columns={"YawBrTDxp": ("m", swing)})
+    read = read_base_history(last, reading=KEPT)
+    spline = CubicSpline(read.time, swing)(read.time, 2)
+    assert_allclose(read.accelerations[:, 0], spline, atol=1e-4 * np.abs(spline).max())
+    assert read.read == "YawBrTDxp [m], differentiated twice"
 
 
 @pytest.mark.parametrize(

@@ -175,6 +175,11 @@ def read_base_history(
     columns = {channel.name: values[:, k] for k, channel in found.items()}
     require_sound(f"{KIND} '{file}'", time, columns)
     read = ", ".join(f"{one.name} [{one.unit.strip('()')}]" for one in found.values())
+    if not np.ptp(values, axis=0).any():
+        raise InputError(
+            f"{KIND} '{file}': {read} never changes, so that nothing moves: let the model's tower "
+            "bend, or name other channels"
+        )
     if chosen.displacement:
         values = np.asarray(CubicSpline(time, values)(time, 2))
         read += ", differentiated twice"
@@ -186,11 +191,6 @@ def read_base_history(
     if mapping.tilt:
         values = to_shaft_frame(values, mapping.tilt)
         read += f", turned by the shaft's tilt of {mapping.tilt:g} deg"
-    if not np.ptp(values, axis=0).any():
-        raise InputError(
-            f"{KIND} '{file}': {read} never changes, so that nothing moves: let the model's tower "
-            "bend, or name other channels"
-        )
     kept = time >= time[0] + skip
     if kept.sum() < MIN_SAMPLES:
         raise InputError(
