@@ -174,7 +174,7 @@ def growth(equations: Equations, expected: float) -> float:
         Rate that is looked for, which says how long to look [1/s].
     """
     s, n = equations.springs, len(equations.mass)
-    duration = float(np.clip(6.0 / max(expected, 1e-3), 2.0, 4.0))
+    duration = float(np.clip(6.0 / expected, 2.0, 4.0)) if expected > BARELY else 2.0
     step = 1.0 / (100.0 * float(s.frequency.max()))
     begin = State(1e-5 * np.random.default_rng(1).standard_normal(n), np.zeros(n), np.zeros(n))
     motion = integrate(equations, steady(np.zeros(n)), duration, step, start=begin)
