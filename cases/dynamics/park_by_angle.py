@@ -7,6 +7,18 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.dynamics.park_events import (
+    ANGLE,
+    BRAKE,
+    DRIFT,
+    HARMONICS,
+    TIME,
+    UNBOUND,
+    Event,
+    braked,
+    events,
+    speeds,
+)
 from fe_drivetrain.cases.dynamics.park_models import (
     CONTACT_RATIO,
     DAMPING,
@@ -25,7 +37,6 @@ from fe_drivetrain.dynamics import (
     State,
     System,
     equations_of,
-    free_motions,
     integrate,
     library_machine,
     machine_system,
@@ -36,37 +47,9 @@ from fe_drivetrain.dynamics import (
 from fe_drivetrain.report import error_bars, trace
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
-HARMONICS = 8
-"""Harmonics of the stiffness, as printed with Eq 10."""
-BRAKE = 0.5
-"""Torque of the stop's brake over the torque of operation: the source names stops alone."""
-UNBOUND = 50.0
-"""Mesh force over the static one past which vibration has no bound: the load is some 3 times it."""
-TIME, ANGLE, DRIFT = "K(t)", "K(theta)", "K(theta) without its force on the angle"
 LEAST, LARGEST = "least force of a mesh over the static one", "largest force over the static one"
 COUNTED = "Least mesh force after a torque step over the phase at its beginning"
 WAVES = "Sun-planet force after a torque step, over the static one"
-
-
-class Event(NamedTuple):
-    """A load from t = 0, and the state before it.
-
-    Attributes
-    ----------
-    load : Floats
-        Load that acts [N, N m].
-    wound : bool
-        Whether the shafts are wound up by the balanced torque already.
-    turning : bool
-        Whether all turns with the printed speed already.
-    duration : float
-        Time looked at [s].
-    """
-
-    load: Floats
-    wound: bool
-    turning: bool
-    duration: float
 
 
 class Effect(NamedTuple):
@@ -128,30 +111,6 @@ def run(run: Run, page: Page) -> None:
         ("torque of the stop's brake over that of operation", BRAKE, "-"),
     ):
         page.assume(quantity, value, unit, "not printed")
-
-
-def events(system: System) -> dict[str, Event]:
-    """Operation, a torque step, the beginning of a start from rest, and that of a stop."""
-    balanced = torque(system, 1.0 / park.ratio())
-    ahead = torque(system, 0.0)
-    return {
-        "steady operation": Event(balanced, True, True, 1.0),
-        "torque step": Event(balanced, False, True, 1.5),
-        "start": Event(ahead, False, False, 1.5),
-        "stop": braked(system, BRAKE),
-    }
-
-
-def braked(system: System, brake: float) -> Event:
-    """The beginning of a stop by a brake, whose torque is over that of operation."""
-    return Event(torque(system, (1.0 + brake) / park.ratio()), True, True, 1.5)
-
-
-def speeds(system: System) -> Floats:
-    """(n,) velocities of steady turning at the printed speed [m/s, rad/s]."""
-    rigid = free_motions(equations_of(system))[:, 0]
-    rotor = system.load_on("rotor", np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0]))
-    return np.asarray(SPEED * rigid / float(rotor @ rigid))
 
 
 def moved(
@@ -302,7 +261,8 @@ def torsional(page: Page, flat: System, phases: Iterable[float], dt: float) -> b
             f"forces stay below {UNBOUND:g} times the static ones here."
             if bounded
             else f"by angle, forces grow past {UNBOUND:g} times the static ones, or do not "
-            "converge. Teeth that part, which a linear spring cannot, would limit them."
+            "converge; teeth that part limit them with some backlash and not with other "
+            "(dynamics/park_backlash)."
         )
     )
     return bounded
@@ -380,7 +340,7 @@ def answer(page: Page, found: dict[str, Effect], band: float, bounded: bool, str
             *(
                 [
                     f"From a brake of {strong:g} times the torque of operation, forces by angle "
-                    "have no bound: meshes are linear springs, as in the source."
+                    "have no bound, nor with backlash (dynamics/park_backlash)."
                 ]
                 if np.isfinite(strong)
                 else []

@@ -5,6 +5,7 @@ from scipy.integrate import solve_ivp
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.dynamics.bodies.equations import (
+    Equations,
     equations_of_motion,
     fourier_wave,
     spring_laws,
@@ -40,6 +41,12 @@ def exact_growth(depth: float, frequency: float) -> float:
     return float(np.log(np.abs(values).max()) / period)
 
 
+def varying_spring(depth: float, frequency: float, damping: float = 0.0) -> Equations:
+    """A unit mass on a spring of 1 + e cos W t; arguments as of `stepped_growth`."""
+    springs = spring_laws([[1.0]], 1.0, 2.0 * damping).in_phase(frequency=0.5 * frequency / np.pi)
+    return equations_of_motion([1.0], springs.with_waves([fourier_wave([depth], [0.0])]))
+
+
 def stepped_growth(depth: float, frequency: float, steps: int, damping: float = 0.0) -> float:
     """Rate of growth [1/s] by average acceleration, from the motion over one period of the spring.
 
@@ -54,12 +61,7 @@ def stepped_growth(depth: float, frequency: float, steps: int, damping: float = 
     damping : float
         Ratio to critical damping.
     """
-    period = 2.0 * np.pi / frequency
-    wave = fourier_wave([depth], [0.0])
-    springs = (
-        spring_laws([[1.0]], 1.0, 2.0 * damping).in_phase(frequency=1.0 / period).with_waves([wave])
-    )
-    one = equations_of_motion([1.0], springs)
+    period, one = 2.0 * np.pi / frequency, varying_spring(depth, frequency, damping)
 
     def after(q: float, velocity: float) -> Floats:
         start = State(np.array([q]), np.array([velocity]), np.zeros(1))

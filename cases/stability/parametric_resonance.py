@@ -3,7 +3,8 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.references.mathieu import stepped_growth
+from fe_drivetrain.cases.references.mathieu import exact_growth, stepped_growth, varying_spring
+from fe_drivetrain.dynamics import parametric_growth
 from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
@@ -80,6 +81,15 @@ def run(run: Run, page: Page) -> None:
             within=0.01 + e**2 / 8.0,
             why="the next order is of the square of the variation",
             source="averaging, first order in the variation",
+        )
+        page.equals(
+            f"variation {e}: growth without damping by multipliers of exact steps [1/s]",
+            max(parametric_growth(varying_spring(e, 2.0)).values()),
+            exact_growth(e, 2.0),
+            within=1e-3,
+            why="steps are of second order",
+            source="Mathieu's equation, an explicit method",
+            measure="frequency",
         )
     page.limit(
         "a mesh whose stiffness varies at twice a natural frequency",

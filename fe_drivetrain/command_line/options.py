@@ -53,7 +53,8 @@ Channels = Annotated[
         "--channel",
         metavar="NAME=COLUMN",
         help="How the files call a channel: NAME is time, Fx, Fy, Fz, Mx, My, Mz, rotor speed or "
-        "wind speed, as in --channel 'wind speed=Vhub'. May be repeated.",
+        "wind speed, as in --channel 'wind speed=Vhub'; of a nacelle's acceleration ax, ay, az, "
+        "arx, ary or arz. May be repeated.",
     ),
 ]
 Mapping = Annotated[

@@ -63,9 +63,9 @@ class TransientRequest:
         typer.Option(
             "--loads",
             metavar="FILES",
-            help="Histories of operation: a file (.out, .outb, .csv, or of other programs), a "
-            "folder, or "
-            "a pattern in quotes, as in 'outputs/*.outb'. May be repeated.",
+            help="Histories of operation, or of the base's acceleration: a file (.out, .outb, "
+            ".csv, or of other programs), a folder, or a pattern in quotes, as in "
+            "'outputs/*.outb'. May be repeated.",
         ),
     ] = None
     value: Annotated[

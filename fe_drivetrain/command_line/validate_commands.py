@@ -9,8 +9,9 @@ from pathlib import Path
 from fe_drivetrain.procedure.project import Capture, Comparison, Project
 from fe_drivetrain.report.suite.case import Case, all_cases
 from fe_drivetrain.report.suite.chosen import SETTING
-from fe_drivetrain.studies.drivetrain_transient import EVENT_NAMES, OPERATION
+from fe_drivetrain.studies.drivetrain_transient import EVENT_NAMES
 from fe_drivetrain.studies.project_validation import ValidateResult
+from fe_drivetrain.studies.transient_histories import OPERATION
 
 _MADE_AGAIN = frozenset({"missing", "edited", "stale", "quick", "of another drivetrain"})
 """States of evidence that a run may change."""

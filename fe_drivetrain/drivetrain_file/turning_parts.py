@@ -192,7 +192,7 @@ class ShaftRow(Part):
     )
     bending: float | None = dimension(
         None,
-        of="stiffness of the hinge at its middle in bending",
+        of="stiffness in bending (E I over the length of a uniform one)",
         unit="N m/rad",
         gt=0,
         le=MAX_STIFFNESS,

@@ -137,6 +137,7 @@ from .bodies.system import with_stiffness as with_stiffness
 from .bodies.system import without_massless as without_massless
 from .bodies.torsional_table import gear_table as gear_table
 from .time.base_motion import BaseMotion as BaseMotion
+from .time.base_motion import base_acceleration as base_acceleration
 from .time.base_motion import base_motion as base_motion
 from .time.base_motion import on_base as on_base
 from .time.base_motion import read_base_motion as read_base_motion
@@ -152,6 +153,7 @@ from .time.motion import Braking as Braking
 from .time.motion import Motion as Motion
 from .time.motion import State as State
 from .time.motion import StepHistory as StepHistory
+from .time.parametric_growth import parametric_growth as parametric_growth
 from .time.rolling_bearings import RollingBearings as RollingBearings
 from .time.rolling_bearings import rolling_bearings as rolling_bearings
 from .time.schemes import AVERAGE as AVERAGE

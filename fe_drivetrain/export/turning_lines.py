@@ -215,8 +215,8 @@ def _line(
 ) -> Line:
     shaft, begin = machine.shafts[k], machine.axes[k]
     bends = level is Level.FLEXIBLE
-    # a beam is exact in one piece, and what has no mass needs no more; hinges are one an element
-    count = ELEMENTS if shaft.has_mass or shaft.bending is not None else 1
+    # a beam is exact in one piece, and what has no mass needs no more
+    count = ELEMENTS if shaft.has_mass else 1
     stations = shaft_stations(machine, k, count if bends else 0)
     of_name = {body.name: body for body in built.bodies}
     before = _between(k, ends[0], built)
@@ -297,7 +297,7 @@ def _link(
     stiffest: Floats,
     level: Level,
 ) -> Link:
-    """What is no beam: a coupling, a hinge, what is rigid, or torsion alone."""
+    """What is no bar: a coupling, what is rigid, torsion alone, or a stiffness of its own."""
     pair = [Place(body.name, body.position) for body in (front, rear)]
     if shaft.kind == "rigid":
         springs = bushing(shaft.name, pair[0], pair[1], rear.position, STIFFER * stiffest)

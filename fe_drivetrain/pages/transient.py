@@ -184,6 +184,13 @@ def _histories(page: Page, result: TransientResult) -> None:
     )
     rows = result.tables["files"]
     page.table("Histories" + (f": the first {_SHOWN}" if len(rows) > _SHOWN else ""), rows[:_SHOWN])
+    if "base_motion" in result.tables:
+        page.table("How the base moves", result.tables["base_motion"][:_SHOWN])
+        page.text(
+            "The drivetrain turns under rated torque. Its base has the file's acceleration, "
+            "straight between samples; it begins wound up under the first sample."
+        )
+        return
     apart = max(one.against_file for one in result.files.values())
     page.text(
         "The rotor is driven by the shaft's torque of the file and what its own inertia takes; the "

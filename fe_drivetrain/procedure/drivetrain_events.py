@@ -7,18 +7,18 @@ controls is an assumption of the result.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from typing import ClassVar
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.short_repr import short_repr
-from fe_drivetrain.dynamics.bodies.equations import Equations, Loads, varying
+from fe_drivetrain.dynamics.bodies.equations import varying
 from fe_drivetrain.dynamics.bodies.levels import Level, assembly
-from fe_drivetrain.dynamics.bodies.steady_state import wind_up
 from fe_drivetrain.dynamics.time.base_motion import read_base_motion
 from fe_drivetrain.dynamics.time.brakes import Brake
 from fe_drivetrain.dynamics.time.integration import Phase
@@ -28,14 +28,12 @@ from fe_drivetrain.dynamics.time.steady_turning import with_laws
 from fe_drivetrain.dynamics.time.stopping import StopSequence, stop_phases
 from fe_drivetrain.procedure.coupling_offset import CouplingOffset
 from fe_drivetrain.procedure.gearbox_offset import GearboxOffset
+from fe_drivetrain.procedure.steady_running import steady_rotor, steady_run, wound_up
 from fe_drivetrain.procedure.voltage_dips import Dip
+from fe_drivetrain.turbine_loads.hub_loads.base_history import BaseReading
 
 SIX_MOTIONS = (Level.RIGID, Level.FLEXIBLE)
 """Levels whose bodies have all motions."""
-
-ROUNDS = 8
-"""Rounds in which the phases of stiffnesses at the beginning are found: each leaves a fifth or
-less of what the one before did."""
 
 SLIP = 0.01
 """Slip of a generator at rated torque, where nothing else is known."""
@@ -242,8 +240,8 @@ class VoltageDip(Event):
         times, at = np.unique(table.times, return_index=True)
         shares = np.array(table.values)[at]
         pull = varying(-turning.generator_torque * turning.to_generator, times, shares)
-        acting = [_steady_rotor(of), pull, *turning.loads()]
-        start = _wound_up(of.equations, acting, turning.velocity)
+        acting = [steady_rotor(of), pull, *turning.loads()]
+        start = wound_up(of.equations, acting, turning.velocity)
         back = self.start + self.length
         marks = {
             "voltage dips": self.start,
@@ -289,7 +287,7 @@ class RunUp(Event):
         driving = varying(turning.to_rotor, [0.0], [torque + of.inertia * rate])
         pull = varying(-turning.to_generator, [0.0], [torque / turning.ratio])
         acting = [driving, pull, *turning.loads()]
-        start = _wound_up(of.equations, acting, self.begin * turning.velocity)
+        start = wound_up(of.equations, acting, self.begin * turning.velocity)
         reached = duration * (1.0 - self.begin) / (self.end - self.begin)
         marks = {"rated speed": reached} if 0.0 < reached < duration else {}
         return Planned((Phase(duration, of.equations, acting),), start, marks)
@@ -321,8 +319,8 @@ class Offset(GearboxOffset, CouplingOffset, Event):
         machine, pull = of.turning.line(slip)
         laws = [self.springs(of, *self.of_generator(of))] if self.coupling else []
         made = with_laws(self.moved(of, of.equations), machine, *laws)
-        acting = [_steady_rotor(of), pull, *of.turning.loads()]
-        start = _wound_up(made, acting, of.turning.velocity)
+        acting = [steady_rotor(of), pull, *of.turning.loads()]
+        start = wound_up(made, acting, of.turning.velocity)
         return Planned((Phase(duration, made, acting),), start, {})
 
     def step(self, of: Running) -> float:
@@ -337,7 +335,12 @@ class BaseMoves(Event):
     Attributes
     ----------
     file : str
-        CSV file of columns "time [s],ux [m],...,rz [rad]", about the rotor's centre.
+        CSV file of columns "time [s],ux [m],...,rz [rad]", about the rotor's centre, which is run
+        as a whole; empty where histories say how the base moves.
+    x, y, z : float
+        Place of the sensor of histories from the rotor's centre [m].
+    mean : str
+        Whether the mean of each acceleration of histories is "removed" or "kept".
     """
 
     levels: ClassVar[tuple[Level, ...]] = SIX_MOTIONS
@@ -345,22 +348,36 @@ class BaseMoves(Event):
     seconds: ClassVar[float] = 0.0
 
     file: str = ""
+    x: float = 0.0
+    y: float = 0.0
+    z: float = 0.0
+    mean: str = "removed"
 
     def __post_init__(self) -> None:
-        if not self.file:
+        _in_range(self, x=(-50.0, 50.0), y=(-50.0, 50.0), z=(-50.0, 50.0))
+        require_known("mean of the event", self.mean, ("removed", "kept"))
+        if self.file and (self.x or self.y or self.z or self.mean != "removed"):
             raise InputError(
-                "the motion of a base needs a file: give it, as in file=base.csv, with columns "
-                "'time [s]' and some of ux [m] to rz [rad]"
+                "x, y, z and mean of a base are of histories, but file is given: leave them out, "
+                f"or give {argument('loads')} in place of file"
             )
+
+    def reading(self) -> BaseReading:
+        """How histories of the base are read."""
+        return BaseReading((self.x, self.y, self.z), self.mean == "kept")
 
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """One phase; nothing is marked."""
+        if not self.file:
+            raise InputError(
+                f"the motion of a base needs histories: give {argument('loads')}, as in "
+                "outputs/*.outb; or a file, as in file=base.csv, with columns 'time [s]' and some "
+                "of ux [m] to rz [rad]"
+            )
         bodies = assembly(of.machine, of.level, flexible=of.flexible).bodies
         base = read_base_motion(self.file, of.system, bodies)
-        machine, pull = of.turning.line(slip)
-        made = with_laws(of.equations, machine)
-        acting = [_steady_rotor(of), pull, *of.turning.loads()]
-        start = _wound_up(made, acting, of.turning.velocity)
+        made, acting = steady_run(of, slip)
+        start = wound_up(made, acting, of.turning.velocity)
         start = replace(start, time=float(base.times[0]))
         last = float(base.times[-1])
         until = min(start.time + duration, last) if duration else last
@@ -436,22 +453,3 @@ def _require_within(event: object, duration: float, *names: str) -> None:
                 f"{name} of the event is at {at:g} s but the run ends at {duration:g} s: let it "
                 "last longer"
             )
-
-
-def _steady_rotor(of: Running) -> Loads:
-    return varying(of.turning.to_rotor, [0.0], [of.turning.torque])
-
-
-def _wound_up(equations: Equations, acting: Sequence[Loads], velocity: Floats) -> State:
-    """State without vibration under the loads at the beginning.
-
-    Stiffnesses that go with an angle are those of the state itself, found by a few rounds with
-    phases that stand.
-    """
-    load = np.sum([one.at(0.0) for one in acting], axis=0)
-    s, q = equations.springs, np.zeros(len(velocity))
-    for _ in range(ROUNDS if s.turns.any() else 1):
-        stands = replace(s, phase=s.phase + s.turns @ q, turns=np.zeros_like(s.turns))
-        found = wind_up(replace(equations, springs=stands), load, velocity)
-        q = found.q
-    return State(found.q, velocity, found.acceleration)

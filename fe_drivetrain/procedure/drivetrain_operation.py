@@ -1,4 +1,4 @@
-"""Operation of a drivetrain from a history of hub loads, in pieces of bounded memory.
+"""A drivetrain driven by a history, in pieces of bounded memory: of hub loads, or of its base.
 
 What a file has at the hub is what the shaft feels there. The rotor's inertia stands before it, so
 the torque that drives the rotor is that of the shaft and what speeds the rotor up, ``Mx + J w'``,
@@ -8,6 +8,8 @@ keeps its polar inertia alone. The generator
 has the file's own torque, held to the file's speed by a line so weak that it answers in some
 seconds: gear ratios and inertias of file and drivetrain are never quite the same, and the speed
 would drift. A file without the generator's torque gets a line of slip about its own speed.
+
+A history of the base moves what turns steadily under rated torque.
 """
 
 from __future__ import annotations
@@ -16,19 +18,23 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.integrate import trapezoid
 from scipy.interpolate import CubicSpline
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies.equations import Equations, Loads, SpringLaws, summed, varying
-from fe_drivetrain.dynamics.bodies.levels import Level
+from fe_drivetrain.dynamics.bodies.levels import Level, assembly
 from fe_drivetrain.dynamics.bodies.steady_state import wind_up
+from fe_drivetrain.dynamics.time.base_motion import base_acceleration, integrated, on_base
 from fe_drivetrain.dynamics.time.energy_account import WORK
 from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.machines import slip_line
 from fe_drivetrain.dynamics.time.motion import Motion, State
 from fe_drivetrain.dynamics.time.running import Running
 from fe_drivetrain.dynamics.time.steady_turning import with_laws
+from fe_drivetrain.procedure.steady_running import steady_run, wound_up
+from fe_drivetrain.turbine_loads.hub_loads.base_history import BaseHistory
 from fe_drivetrain.turbine_loads.hub_loads.drive_history import DriveHistory
 
 HOLD = 10.0
@@ -133,6 +139,30 @@ def operation(of: Running, history: DriveHistory, slip: float) -> Operation:
     found = wind_up(equations, loads.at(history.time[0]), velocity)
     start = State(found.q, velocity, found.acceleration, float(history.time[0]))
     return Operation(of, equations, loads, start, float(history.time[-1]))
+
+
+def shaken(of: Running, history: BaseHistory, slip: float) -> Operation:
+    """A machine that turns steadily on a base that moves.
+
+    Parameters
+    ----------
+    of : Running
+        The machine at a level with all motions.
+    history : BaseHistory
+        Acceleration of the base; its velocity has no mean.
+    slip : float
+        Slip of the generator at rated torque.
+    """
+    bodies = assembly(of.machine, of.level, flexible=of.flexible).bodies
+    time, a = history.time, history.accelerations
+    moved = a.any(axis=0)
+    gained = integrated(time, a[:, moved])
+    velocity = -trapezoid(gained, time, axis=0) / history.seconds
+    base = base_acceleration(on_base(of.system, bodies)[:, moved], time, a[:, moved], velocity)
+    equations, acting = steady_run(of, slip)
+    acting = [*acting, base.loads_on(equations)]
+    start = wound_up(equations, acting, of.turning.velocity, float(time[0]))
+    return Operation(of, equations, summed(*acting), start, float(time[-1]))
 
 
 def _rotor_speed(of: Running, history: DriveHistory) -> Floats:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, nan
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +23,7 @@ from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
 from fe_drivetrain.dynamics.bodies.roller_matrices import asked_rungs
 from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.machine_channels import Kind
-from fe_drivetrain.procedure.drivetrain_events import EVENTS, Event, event_of
-from fe_drivetrain.procedure.drivetrain_operation import operation
+from fe_drivetrain.procedure.drivetrain_events import EVENTS, BaseMoves, Event, event_of
 from fe_drivetrain.procedure.travelling_planets import (
     STAND,
     TRAVEL,
@@ -43,6 +42,7 @@ from fe_drivetrain.studies.transient_digest import (
     OperationOptions,
     digests,
     driven,
+    moving_under,
 )
 from fe_drivetrain.studies.transient_events import (
     prepared_event,
@@ -54,6 +54,12 @@ from fe_drivetrain.studies.transient_findings import (
     state_assumptions,
     state_bounds,
     state_figures,
+)
+from fe_drivetrain.studies.transient_histories import (
+    OPERATION,
+    driving_options,
+    state_base,
+    takes_histories,
 )
 from fe_drivetrain.studies.transient_instants import ByInstant, by_instant
 from fe_drivetrain.studies.transient_ladder import (
@@ -91,11 +97,8 @@ from fe_drivetrain.studies.transient_tables import (
     over_files,
     spectrum_rows,
 )
-from fe_drivetrain.turbine_loads.hub_loads.drive_history import read_drive
+from fe_drivetrain.turbine_loads.hub_loads.base_history import BaseHistory
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
-
-OPERATION = "operation"
-"""Event that is driven by histories."""
 
 EVENT_NAMES = (OPERATION, *EVENTS)
 """Names of all events."""
@@ -148,7 +151,8 @@ def transient(
         Values of the event other than its defaults, by name: see the classes of
         `fe_drivetrain.procedure.drivetrain_events`.
     loads : str, path, or sequence of these
-        Histories of operation: files (.out, .outb of OpenFAST, or .csv), folders, patterns.
+        Histories of operation, or of the base's acceleration: files (.out, .outb of OpenFAST, or
+        .csv), folders, patterns.
     level : str, optional
         "torsional", "rigid" or "flexible", or the name of a condensed level; all are run and
         compared where left out. All but the torsional one have the gearbox's housing on its mount
@@ -213,12 +217,8 @@ def transient(
         travels(event, planets, machine, named),
         part_question(drivetrain, machine, damage),
     )
-    if event == OPERATION:
+    if takes_histories(event, bool(loads)):
         return _operated(asked, recorded_files(loads), options or OperationOptions(), resume, steps)
-    if loads:
-        raise InputError(
-            f"event {event} takes no histories: leave {argument('loads')} out, or ask for operation"
-        )
     return _happened(asked, steps)
 
 
@@ -356,22 +356,21 @@ def _load_loops() -> None:
 def _operated(
     asked: _Asked, files: Sequence[Path], options: OperationOptions, resume: bool, steps: Steps
 ) -> TransientResult:
-    """Operation under histories, one by one."""
+    """Operation under histories, or on a base that they move, one by one."""
     if not files:
         raise InputError(
             f"operation needs histories: give {argument('loads')}, as in outputs/*.outb"
         )
-    if asked.values:
-        raise InputError(f"operation has no value {next(iter(asked.values))!r}: leave it out")
     options = replace(
-        options,
+        driving_options(asked.event, asked.values, options, asked.travels),
         step=options.step if asked.step is None else asked.step,
         until=options.until if asked.duration is None else asked.duration,
     )
     _require_span("duration", options.until, (0.0, inf))
     _require_span("step", options.step, STEPS)
-    first = read_drive(files[0], options.names, options.skip)
-    asked.parts.require_winds(files, first.wind)
+    first = options.read(files[0])
+    hub = None if isinstance(first, BaseHistory) else first
+    asked.parts.require_winds(files, nan if hub is None else hub.wind)
     window = min(WINDOW if options.until is None else options.until, WINDOW, first.seconds)
 
     counted = asked.parts.counted
@@ -379,13 +378,18 @@ def _operated(
 
     def at(rung: Rung) -> Callable[[float | None], LevelRun]:
         of = made[rung.name] = Prepared(
-            asked.machine, rung, asked.rated, hub_loads=first.has_all, parts=counted
+            asked.machine,
+            rung,
+            asked.rated,
+            hub_loads=hub is not None and hub.has_all,
+            parts=counted,
         )
-        moving = operation(of.of, first, asked.rated.slip)
+        moving = moving_under(of.of, first, asked.rated.slip)
         return lambda step: of.window(moving, options.step if step is None else step, window)
 
     found = _findings(asked)
-    runs, number = _compared(asked, asked.levels(list(Level)), at, options.step, steps)
+    possible = list(Level) if hub is not None else BaseMoves.levels
+    runs, number = _compared(asked, asked.levels(possible), at, options.step, steps)
     rung = runs[number].rung
     names = [short_name(path, files) for path in files]
     with steps.step("files"):
@@ -410,6 +414,8 @@ def _operated(
     found.data("equivalent_loads", equivalent_rows(of_files, extremes, options.slopes))
     found.data("duration_spectra", spectrum_rows(of_files, extremes))
     found.data("files", digest_rows(of_files, extremes))
+    if isinstance(first, BaseHistory):
+        state_base(found, first, files, options, asked.values)
     with steps.step("gears and bearings"):
         use = asked.parts.of_operation(of_files, files, runs[number], asked.rated.torque)
     if use is not None and (use.gears or use.bearings):

@@ -86,7 +86,7 @@ class _Answered(NamedTuple):
         """Largest force of a bearing beside that at rated torque."""
         one = self.extremes[name]
         band = None if one.most_band is None else one.most_band / 1e3
-        rated = abs(one.rated) / 1e3
+        rated = abs(_beyond_noise(one)) / 1e3
         return self.found.value(
             f"largest {name} [kN]", one.largest / 1e3, band, beside=rated, by="rated torque"
         )
@@ -232,7 +232,7 @@ def _cautions(
     if absent:
         which = "Histories" if all(one.absent for one in files.values()) else "Some histories"
         said.append(f"{which} have no {' and no '.join(absent)}: their torque acts alone.")
-    if any(not one.own_generator for one in files.values()):
+    if event == "operation" and any(not one.own_generator for one in files.values()):
         said.append("A file has no torque of its generator: a line of slip stands for it.")
     if any(of_planet(name) and run.extremes[name].kind == "bearing" for name in run.extremes):
         planets = "travel with their carrier" if run.planets_travel else "stand at one azimuth"
@@ -335,9 +335,15 @@ def _uncertain(row: Record) -> float:
 def _base(of: _Answered, _: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:
     worst = of.heaviest(lambda one: max(one.most - one.rated, one.rated - one.least))
     one = of.extremes[worst]
-    least, most, rated = (value_text(v / 1e3, "kN") for v in (one.least, one.most, one.rated))
+    values = one.least, one.most, _beyond_noise(one)
+    least, most, rated = (value_text(v / 1e3, "kN") for v in values)
     verdict = f"As the base moves, the {worst} is between {least} and {most}, beside {rated}."
     return verdict, [of.force(worst), of.over(of.torque), *_others(of)[:1]]
+
+
+def _beyond_noise(one: Extreme) -> float:
+    """Value at rated torque; 0 where it is as good as that."""
+    return one.rated if abs(one.rated) > 1e-6 * one.largest else 0.0
 
 
 def _operation(of: _Answered, files: Mapping[str, FileDigest]) -> tuple[str, list[KeyFigure]]:

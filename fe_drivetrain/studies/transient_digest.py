@@ -17,7 +17,13 @@ from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.time.machine_channels import Channels
-from fe_drivetrain.procedure.drivetrain_operation import EnergyAccount, operation
+from fe_drivetrain.dynamics.time.running import Running
+from fe_drivetrain.procedure.drivetrain_operation import (
+    EnergyAccount,
+    Operation,
+    operation,
+    shaken,
+)
 from fe_drivetrain.report.seal import drivetrain_hash
 from fe_drivetrain.studies.history_options import HistoryOptions
 from fe_drivetrain.studies.part_loads import NO_PARTS, CountedParts, PartDigest
@@ -25,6 +31,11 @@ from fe_drivetrain.studies.transient_runs import REVERSAL, SMALL, Prepared, Rate
 from fe_drivetrain.turbine_loads.histories.classes import Classes
 from fe_drivetrain.turbine_loads.histories.damage import FREQUENCY, SLOPES
 from fe_drivetrain.turbine_loads.histories.farm import Counting, Piece, piece
+from fe_drivetrain.turbine_loads.hub_loads.base_history import (
+    BaseHistory,
+    BaseReading,
+    read_base_history,
+)
 from fe_drivetrain.turbine_loads.hub_loads.drive_history import DriveHistory, read_drive
 from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_digest
 
@@ -51,11 +62,31 @@ class OperationOptions(HistoryOptions):
         Step of integration [s].
     until : float or None
         Time after the first sample at which a history is left; its end where None [s].
+    base : BaseReading or None
+        How histories of the base are read; None where they are of the hub's loads.
     """
 
     slopes: Sequence[float] = SLOPES
     step: float = 5e-3
     until: float | None = None
+    base: BaseReading | None = None
+
+    def read(self, file: Path) -> DriveHistory | BaseHistory:
+        """The history in a file.
+
+        Parameters
+        ----------
+        file : Path
+            The file.
+
+        Raises
+        ------
+        InputError
+            It cannot be read, or has not what is needed.
+        """
+        if self.base is None:
+            return read_drive(file, self.names, self.skip)
+        return read_base_history(file, self.names, self.skip, self.base)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +133,8 @@ class FileDigest:
     imbalance : float
         Energy that appears from nowhere, over the largest.
     against_file : float
-        Deviation (RMS) of the first shaft's torque from that of the file, over rated torque.
+        Deviation (RMS) of the first shaft's torque from that of the file, over rated torque; NaN of
+        a base.
     speed_against_file : float
         Largest deviation of the rotor's speed from that of the file, over rated speed; NaN where
         the file has none.
@@ -189,15 +221,17 @@ class _Sums:
 
 @dataclass
 class _Against:
-    """Deviations of torque and speed from those of the file."""
+    """Deviations of torque and speed from those of the file; none of a base."""
 
-    history: DriveHistory
+    history: DriveHistory | None
     squares: float = 0.0
     count: int = 0
     speed: float = field(default=np.nan)
 
     def add(self, times: Floats, torque: Floats, speed: Floats) -> None:
         """Add samples."""
+        if self.history is None:
+            return
         known = np.interp(times, self.history.time, self.history.torque)
         self.squares += float(((torque - known) ** 2).sum())
         self.count += len(times)
@@ -205,9 +239,33 @@ class _Against:
             apart = np.abs(speed - np.interp(times, self.history.time, self.history.rotor_speed))
             self.speed = max(0.0 if np.isnan(self.speed) else self.speed, float(apart.max()))
 
+    @property
+    def torque(self) -> float:
+        """Deviation (RMS) of the torque; NaN of a base [N m]."""
+        if self.history is None:
+            return np.nan
+        return float(np.sqrt(self.squares / max(self.count, 1)))
+
+
+def moving_under(of: Running, history: DriveHistory | BaseHistory, slip: float) -> Operation:
+    """A machine that its history drives, or whose base it moves.
+
+    Parameters
+    ----------
+    of : Running
+        The machine at a level.
+    history : DriveHistory or BaseHistory
+        The history.
+    slip : float
+        Slip of the generator at rated torque.
+    """
+    if isinstance(history, BaseHistory):
+        return shaken(of, history, slip)
+    return operation(of, history, slip)
+
 
 def driven(
-    prepared: Prepared, history: DriveHistory, asked: OperationOptions
+    prepared: Prepared, history: DriveHistory | BaseHistory, asked: OperationOptions
 ) -> tuple[FileDigest, Samples]:
     """What a drivetrain does over a history: the digest, and samples for a chart.
 
@@ -215,15 +273,16 @@ def driven(
     ----------
     prepared : Prepared
         The drivetrain at a level.
-    history : DriveHistory
-        What drives it.
+    history : DriveHistory or BaseHistory
+        What drives it, or moves its base.
     asked : OperationOptions
         Step, slopes, and until when.
     """
     channels, rated = prepared.channels, prepared.rated
-    moving = operation(prepared.of, history, rated.slip)
+    moving = moving_under(prepared.of, history, rated.slip)
     sums = _sums(channels, tuple(asked.slopes))
-    account, against, counter = EnergyAccount(), _Against(history), prepared.reader.counter(history)
+    hub = history if isinstance(history, DriveHistory) else None
+    account, against, counter = EnergyAccount(), _Against(hub), prepared.reader.counter(hub)
     first = next((k for k, kind in enumerate(channels.kinds) if kind == "torque"), None)
     rotor = channels.names.index("speed of rotor")
     until = None if asked.until is None else float(history.time[0]) + asked.until
@@ -247,12 +306,12 @@ def driven(
         end - float(history.time[0]),
         {name: one.digest(asked.step) for name, one in zip(channels.names, sums, strict=True)},
         account.relative_imbalance,
-        float(np.sqrt(against.squares / max(against.count, 1))) / rated.torque,
+        against.torque / rated.torque,
         against.speed / rated.rotor_speed,
-        float(history.generator_torque is not None),
-        ", ".join(history.absent),
+        float(hub is not None and hub.generator_torque is not None),
+        "" if hub is None else ", ".join(hub.absent),
         counter.digest(),
-        history.wind,
+        np.nan if hub is None else hub.wind,
     )
     units = tuple(channels.unit(k) for k in range(len(channels.names)))
     times = np.concatenate([t for t, _ in shown])
@@ -312,8 +371,9 @@ def kept_digest(
         kept = cache.load_record("load-digests", content, FileDigest)
         if kept is not None:
             return kept
-    history = read_drive(file, asked.names, asked.skip)
-    prepared = Prepared(machine, rung, rated, hub_loads=history.has_all, parts=parts)
+    history = asked.read(file)
+    whole = isinstance(history, DriveHistory) and history.has_all
+    prepared = Prepared(machine, rung, rated, hub_loads=whole, parts=parts)
     found, _ = driven(prepared, history, asked)
     cache.keep_record("load-digests", content, found)
     return found
@@ -341,6 +401,7 @@ def _content(
         "slopes": [float(slope) for slope in asked.slopes],
         "step": asked.step,
         "until": asked.until,
+        "base": _plain(asked.base),
         "parts": parts.content,
     }
 

@@ -129,6 +129,8 @@ def state_assumptions(
     aligned = {one.name for one in fields(GearboxOffset)}
     if event == "offset" and not values.get("coupling"):
         aligned |= {one.name for one in fields(CouplingOffset)}
+    if event == "base":  # stated with its histories
+        aligned |= {one.name for one in fields(EVENTS["base"])}  # type: ignore[arg-type]
     for one in () if kind is None else fields(kind):  # type: ignore[arg-type]
         if one.name not in values and one.name not in aligned:
             unit = "s" if one.name in _TIMES else _UNITS.get(one.name, "")

@@ -189,9 +189,10 @@ def digest_rows(files: Mapping[str, FileDigest], extremes: Mapping[str, Extreme]
             of, rated = one.channels[name], extremes[name].rated
             row[f"{name}, largest over rated"] = of.most / rated
             row[f"{name}, least over rated"] = of.least / rated
-        row["torque against the file, RMS over rated"] = one.against_file
-        row["speed against the file, largest over rated"] = one.speed_against_file
-        row["generator"] = "torque of the file" if one.own_generator else "line of slip"
+        if np.isfinite(one.against_file):
+            row["torque against the file, RMS over rated"] = one.against_file
+            row["speed against the file, largest over rated"] = one.speed_against_file
+            row["generator"] = "torque of the file" if one.own_generator else "line of slip"
         rows.append(row)
     return rows
 

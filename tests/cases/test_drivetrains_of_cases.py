@@ -327,8 +327,8 @@ OF_NO_OTHER = {
         "of a claim of Park et al., that stiffness goes by angle, on their own drivetrain": (
             "dynamics/park_by_angle",
         ),
-        "of bearings that Park et al. do not print, and of their own meshes on them": (
-            "dynamics/park_bearings",
+        "of words of Park et al. on backlash, in their figures: `transient --backlash` takes any": (
+            "dynamics/park_backlash",
         ),
         "of what a thesis prints of its drivetrain: values and sentences are held to its data": (
             "drivetrain/drivetrains_a_b_c",

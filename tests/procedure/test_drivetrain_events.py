@@ -128,7 +128,8 @@ def test_a_generator_on_its_foundation_goes_along_with_the_base(tmp_path: Path) 
         ("run_up", {"begin": 1.2}, "end of the event is 1.1 but must be above begin, 1.2"),
         ("offset", {}, "coupling of the event is 0 N/m but must be above 0 N/m"),
         ("offset", {"coupling": 1e6, "y": 0.0}, "y, z and run_out of the event are all 0 m"),
-        ("base", {}, "the motion of a base needs a file"),
+        ("base", {"file": "a.csv", "x": 1.0}, "x, y, z and mean of a base are of histories"),
+        ("base", {"z": 80.0}, "z of the event is 80 but must be from -50 to 50"),
     ],
 )
 def test_what_is_no_event_is_refused(name: str, values: dict[str, float | str], said: str) -> None:

@@ -47,6 +47,7 @@ from fe_drivetrain.studies.transient_loads import design_loads
 from fe_drivetrain.studies.transient_parts import DamageOptions
 from fe_drivetrain.studies.transient_runs import Extreme, Samples, telling_torque
 from fe_drivetrain.turbine_loads.histories.sites import Site
+from fe_drivetrain.turbine_loads.hub_loads.drive_history import DriveHistory
 
 CATALOGUE = protest_catalogue()
 PARK = {"operation.rated_power": 1.5e6, "operation.rotor_speed": [1.0, 1.8]}
@@ -193,10 +194,10 @@ def test_a_run_that_is_resumed_reads_what_is_done_no_more(
     options = OperationOptions(step=0.05)
     first = transient(two_masses(), "operation", loads=files, options=options)
 
-    def refuse(path: Path, *_: object) -> None:
-        raise AssertionError(path)
+    def refuse(_: object, history: DriveHistory, *__: object) -> None:
+        raise AssertionError(history.name)
 
-    monkeypatch.setattr(transient_digest, "read_drive", refuse)
+    monkeypatch.setattr(transient_digest, "driven", refuse)
     again = transient(two_masses(), "operation", loads=files, options=options, resume=True)
     assert again.tables["equivalent_loads"] == first.tables["equivalent_loads"]
     with pytest.raises(AssertionError, match="b"):
@@ -246,7 +247,7 @@ def test_operation_refuses_what_it_cannot_count_before_it_runs(
     def refuse(*_: object) -> None:
         raise AssertionError("a history was driven")
 
-    monkeypatch.setattr(drivetrain_transient, "operation", refuse)
+    monkeypatch.setattr(drivetrain_transient, "moving_under", refuse)
     with pytest.raises(InputError, match=said):
         transient(two_masses(), "operation", loads=path, **more)
 

@@ -76,7 +76,7 @@ def shaft_slices(shaft: ShaftData, start: float, stop: float) -> list[Slice]:
 
 
 def in_series(
-    slices: Sequence[Slice], material: Material
+    slices: Sequence[Slice], material: Material, stiffer: float = 1.0
 ) -> tuple[float, tuple[float, float, float, float, float, float]]:
     """Elastic centre of slices in series [m], and their six stiffnesses there.
 
@@ -90,11 +90,13 @@ def in_series(
         Slices from one end to the other.
     material : Material
         Their material.
+    stiffer : float
+        What their stiffness in bending is over that of their sections.
     """
     E, G = material.youngs_modulus, material.shear_modulus
     along = fsum(s.length / (E * s.section.area) for s in slices)
     twist = fsum(s.length / (G * s.section.torsion) for s in slices)
-    bent = [s.length / (E * s.section.inertias[0]) for s in slices]
+    bent = [s.length / (stiffer * E * s.section.inertias[0]) for s in slices]
     centre = fsum(f * s.middle for f, s in zip(bent, slices, strict=True)) / fsum(bent)
     sheared = fsum(s.length / (G * s.section.shear_areas[0]) for s in slices)
     across = sheared + fsum(
@@ -306,16 +308,12 @@ def shaft_springs(
 ) -> list[Spring]:
     """Springs of a shaft between two of its stations, at their elastic centre."""
     x, y, z = begin
-    centre, k = in_series(shaft_slices(shaft, *span), shaft.material)
-    length = span[1] - span[0]
+    whole = in_series(shaft_slices(shaft, 0.0, shaft.length), shaft.material)[1]
+    stiffer = 1.0 if shaft.bending is None else shaft.bending / whole[4]
+    centre, k = in_series(shaft_slices(shaft, *span), shaft.material, stiffer)
     if shaft.kind == "coupling":
         k = (0.0, 0.0, 0.0, k[3], 0.0, 0.0)
-    elif shaft.bending is not None:
-        # a hinge of given stiffness at the middle, between links that are rigid
-        bent = shaft.bending * shaft.length / length
-        k = (*k[:4], bent, bent)
-    whole = in_series(shaft_slices(shaft, 0.0, shaft.length), shaft.material)[1][3]
-    damping = (0.0, 0.0, 0.0, shaft.damping * k[3] / whole, 0.0, 0.0)
+    damping = (0.0, 0.0, 0.0, shaft.damping * k[3] / whole[3], 0.0, 0.0)
     return bushing(label, places[0], places[1], (x + centre, y, z), k, damping)
 
 

@@ -2,8 +2,9 @@
 
 Displacements are then those against the base, so that springs, bearings and brakes to it act as on
 a base that stands. What moves feels the base by its inertia, -M S g'', and a frame or shaft that
-spins by its gyroscopic terms, -C S g', with the rigid motions S by those of the base. Samples of g
-are joined by a cubic spline, whose acceleration is straight between them, as loads are.
+spins by its gyroscopic terms, -C S g', with the rigid motions S by those of the base. Its
+acceleration is straight between samples, as loads are; samples of g are joined by a cubic spline,
+whose acceleration is that.
 """
 
 from __future__ import annotations
@@ -48,27 +49,37 @@ class BaseMotion:
         Displacements (n, b) of all degrees of freedom as the base moves by one, rigidly.
     times : Floats
         Times (s,) of the samples, ascending [s].
-    displacements : Floats
-        Motion (s, b) of the base [m, rad].
+    accelerations : Floats
+        Acceleration (s, b) of the base [m/s^2, rad/s^2].
+    velocity : Floats
+        Velocity (b,) of the base at the first sample [m/s, rad/s].
     """
 
     __repr__ = short_repr
 
     motions: Floats
     times: Floats
-    displacements: Floats
+    accelerations: Floats
+    velocity: Floats
 
     def loads_on(self, equations: Equations) -> Loads:
         """Loads of inertia and gyroscopic terms on what stands on the base."""
-        path = CubicSpline(self.times, self.displacements)
-        inertia = varying(-equations.mass @ self.motions, self.times, path(self.times, 2))
+        inertia = varying(-equations.mass @ self.motions, self.times, self.accelerations)
         turned = equations.damping @ self.motions
         if not turned.any():
             return inertia
-        parts = np.arange(FINER) / FINER
-        finer = (self.times[:-1, None] + np.diff(self.times)[:, None] * parts).ravel()
-        finer = np.append(finer, self.times[-1])
-        return summed(inertia, varying(-turned, finer, path(finer, 1)))
+        return summed(inertia, varying(-turned, *self._velocities()))
+
+    def _velocities(self) -> tuple[Floats, Floats]:
+        """Times (f,), finer than samples, and velocities (f, b) there."""
+        steps, a = np.diff(self.times)[:, None], self.accelerations
+        v = self.velocity + integrated(self.times, a)
+        part = (np.arange(FINER) / FINER)[:, None, None]
+        slopes = np.diff(a, axis=0) * part / 2.0
+        within = v[:-1] + steps * part * (a[:-1] + slopes)
+        finer = (self.times[:-1] + steps[:, 0] * part[..., 0]).T.ravel()
+        velocities = within.transpose(1, 0, 2).reshape(-1, a.shape[1])
+        return np.append(finer, self.times[-1]), np.vstack([velocities, v[-1:]])
 
     def check(self, begin: float, end: float) -> None:
         """Refuse a run that is not within the samples [s]."""
@@ -98,9 +109,52 @@ def base_motion(motions: ArrayLike, times: ArrayLike, displacements: ArrayLike) 
     InputError
         There are too few samples, times do not ascend, or numbers do not fit each other.
     """
+    S, t, g = _samples(motions, times, displacements)
+    path = CubicSpline(t, g)
+    return BaseMotion(S, t, path(t, 2), path(t[0], 1))
+
+
+def base_acceleration(
+    motions: ArrayLike, times: ArrayLike, accelerations: ArrayLike, velocity: ArrayLike = 0.0
+) -> BaseMotion:
+    """Motion of the base from its acceleration, which is straight between samples.
+
+    Parameters
+    ----------
+    motions : array_like
+        Displacements (n, b) of all degrees of freedom as the base moves by one, rigidly: such as
+        `on_base`.
+    times : array_like
+        Times (s,) of at least 4 samples, ascending [s].
+    accelerations : array_like
+        Acceleration (s, b) of the base [m/s^2, rad/s^2], or (s,) of one.
+    velocity : array_like
+        Velocity (b,) of the base at the first sample, which gyroscopic terms feel [m/s, rad/s].
+
+    Raises
+    ------
+    InputError
+        There are too few samples, times do not ascend, or numbers do not fit each other.
+    """
+    S, t, a = _samples(motions, times, accelerations)
+    begin = np.broadcast_to(np.asarray(velocity, dtype=np.float64), (S.shape[1],))
+    return BaseMotion(S, t, a, np.array(begin))
+
+
+def integrated(times: Floats, values: Floats) -> Floats:
+    """(s, b) integrals over time of values (s, b) that are straight between samples, from zero."""
+    steps = np.diff(times)[:, None]
+    parts = 0.5 * steps * (values[1:] + values[:-1])
+    return np.vstack([np.zeros((1, values.shape[1])), np.cumsum(parts, axis=0)])
+
+
+def _samples(
+    motions: ArrayLike, times: ArrayLike, values: ArrayLike
+) -> tuple[Floats, Floats, Floats]:
+    """Motions, times and values of a base, as arrays that fit each other."""
     S, t = np.asarray(motions, dtype=np.float64), np.asarray(times, dtype=np.float64)
     S = S[:, None] if S.ndim == 1 else S
-    g = np.asarray(displacements, dtype=np.float64).reshape(len(t), -1)
+    g = np.asarray(values, dtype=np.float64).reshape(len(t), -1)
     if len(t) < MINIMUM or not (np.isfinite(t).all() and (np.diff(t) > 0.0).all()):
         raise InputError(
             f"a base's motion has {len(t)} samples but must have at least {MINIMUM}, whose times "
@@ -111,7 +165,7 @@ def base_motion(motions: ArrayLike, times: ArrayLike, displacements: ArrayLike) 
             f"a base's motion has {g.shape[1]} columns of numbers and moves the system in "
             f"{S.shape[1]} ways, but must have as many, all finite: correct them"
         )
-    return BaseMotion(S, t, g)
+    return S, t, g
 
 
 def read_base_motion(path: str | Path, system: System, bodies: Iterable[Body]) -> BaseMotion:

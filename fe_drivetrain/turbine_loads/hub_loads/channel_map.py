@@ -29,7 +29,10 @@ LOAD_NAMES = {
 }
 """What is read by `loads_from_channels`, and the name of OpenFAST that it is read under."""
 
-NAMES = (*LOAD_NAMES, "rotor speed", "generator speed", "wind speed")
+ACCELERATIONS = ("ax", "ay", "az", "arx", "ary", "arz")
+"""Accelerations of a nacelle, along and about x, y and z of the shaft's frame."""
+
+NAMES = (*LOAD_NAMES, "rotor speed", "generator speed", "wind speed", *ACCELERATIONS)
 """What a channel of a file can be mapped as."""
 
 _ACROSS = ("Fy", "Fz", "My", "Mz")

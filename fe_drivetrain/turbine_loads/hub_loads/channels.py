@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import why_unreadable
 from fe_drivetrain.common.regular_files import require_regular
@@ -52,12 +53,18 @@ TIME_UNITS = {"s": 1.0, "sec": 1.0, "ms": 1e-3}
 ANGLE_UNITS = {"deg": np.pi / 180.0, "rad": 1.0}
 FORCE_UNITS = {"N": 1.0, "kN": 1e3, "MN": 1e6}
 MOMENT_UNITS = {"Nm": 1.0, "kNm": 1e3, "MNm": 1e6}
+LENGTH_UNITS = {"m": 1.0, "mm": 1e-3}
+ACCELERATION_UNITS = {"m/s^2": 1.0, "g": GRAVITY, "mg": 1e-3 * GRAVITY}
+TURN_UNITS = {"rad/s^2": 1.0, "deg/s^2": np.pi / 180.0}
 
 _SPELLINGS = {
     **dict.fromkeys(("sec", "second", "seconds", "Sekunden", "Sek"), "s"),
     **dict.fromkeys(("m/sec", "mps", "ms^1", "ms1"), "m/s"),
     **dict.fromkeys(("rad/sec", "rads^1", "rads1"), "rad/s"),
     "deg/sec": "deg/s",
+    **dict.fromkeys(("m/s2", "m/s\u00b2", "m/sec^2", "m/sec2", "ms^2", "ms2"), "m/s^2"),
+    **dict.fromkeys(("rad/s2", "rad/s\u00b2", "rad/sec^2", "rads^2", "rads2"), "rad/s^2"),
+    **dict.fromkeys(("deg/s2", "deg/s\u00b2", "deg/sec^2", "degs^2", "degs2"), "deg/s^2"),
     **dict.fromkeys(("RPM", "1/min", "U/min", "rev/min", "r/min", "min^1", "min1", "Upm"), "rpm"),
     **dict.fromkeys(("degrees", "degree", "Grad", "\u00b0"), "deg"),
     **dict.fromkeys(("radians", "radian"), "rad"),
@@ -65,7 +72,9 @@ _SPELLINGS = {
 """Other ways to write a unit, as `_plain` has them."""
 
 
-def in_si(source: str, channel: Channel, units: Mapping[str, float]) -> Floats:
+def in_si(
+    source: str, channel: Channel, units: Mapping[str, float], kind: str = "hub loads"
+) -> Floats:
     """Samples of a channel in SI units.
 
     Parameters
@@ -76,6 +85,8 @@ def in_si(source: str, channel: Channel, units: Mapping[str, float]) -> Floats:
         The column.
     units : mapping
         Size of each unit that it may have, in SI: `TIME_UNITS` and so on.
+    kind : str
+        What the file is, for messages.
 
     Returns
     -------
@@ -90,7 +101,7 @@ def in_si(source: str, channel: Channel, units: Mapping[str, float]) -> Floats:
     unit = unit if unit in units else _SPELLINGS.get(unit, unit)
     if unit not in units:
         raise InputError(
-            f"hub loads '{source}': channel {channel.name} has the unit '{channel.unit}', not one "
+            f"{kind} '{source}': channel {channel.name} has the unit '{channel.unit}', not one "
             f"of {', '.join(units)}; correct the unit or the channel"
         )
     with np.errstate(over="ignore"):  # an infinity is refused with its place
