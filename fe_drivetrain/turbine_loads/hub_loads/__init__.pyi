@@ -44,8 +44,10 @@ from .surrogate import not_kept as not_kept
 from .surrogate import operating_grid as operating_grid
 from .surrogate import surrogate_grid as surrogate_grid
 from .turbine import RIGID as RIGID
+from .turbine import BladeModes as BladeModes
 from .turbine import Physics as Physics
 from .turbine import Turbine as Turbine
+from .turbine import blade_modes as blade_modes
 from .turbine import natural_frequencies as natural_frequencies
 from .turbine import similar_turbine as similar_turbine
 from .turbine_account import EnergyAccount as EnergyAccount
