@@ -1,5 +1,9 @@
 from .aero_rotor import Rotor as Rotor
 from .aero_rotor import assumptions as assumptions
+from .blade_roots import ROOT_LOADS as ROOT_LOADS
+from .blade_roots import BladeRoots as BladeRoots
+from .blade_roots import blade_roots as blade_roots
+from .blade_roots import root_loads as root_loads
 from .channel_map import ChannelMap as ChannelMap
 from .channel_map import read_channel_map as read_channel_map
 from .controller import Controller as Controller
