@@ -133,8 +133,8 @@ def decay_after(angle: Floats, step: float, stop: float) -> tuple[Decay, Floats]
     late = angle[round(stop / step) :]
     if stop < 0.0 or len(late) < _SHORTEST_DECAY:
         raise InputError(
-            f"stop = {stop:g} s is at the end of a record of {len(angle) * step:g} s, or not in it: "
-            "give the time at which the torque was lost, from its begin"
+            f"stop = {stop:g} s is at the end of a record of {len(angle) * step:g} s, or not in "
+            "it: give the time at which the torque was lost, from its begin"
         )
     swing = np.asarray(late - late[len(late) // 2 :].mean())
     return logarithmic_decrement(swing, step, STOP_PEAKS), swing
