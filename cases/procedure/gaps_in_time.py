@@ -51,8 +51,8 @@ def run(run: Run, page: Page) -> None:
     found = []
     for name, values in misalignments(offset, coupling, run.quick).items():
         with run.step(name):
-            level = Level.RIGID if run.quick else Level.FLEXIBLE
-            found.append(Misaligned(name, values, misaligned(drivetrain, values, level)))
+            moves = Level.RIGID if run.quick else Level.FLEXIBLE
+            found.append(Misaligned(name, values, misaligned(drivetrain, values, moves)))
     shapes, first = SHAPES if run.quick else SHAPES + MORE, SHAPES[0]
     seconds = SECONDS if run.quick else None
     dips: dict[tuple[float, float], TransientResult] = {}
@@ -177,10 +177,10 @@ def show(
     page.table("Largest changes of forces of bearings", changed_rows(found))
     page.section("Voltage dips")
     rows: list[Record] = []
-    for (depth, length), one in dips.items():
-        row: Record = {"depth": depth, "length [s]": length, "level": one.level}
+    for (depth, length), dip in dips.items():
+        row: Record = {"depth": depth, "length [s]": length, "level": dip.level}
         for kind in ("torque", "mesh", "bearing"):
-            name, over = peak_of(one, kind)
+            name, over = peak_of(dip, kind)
             row |= {f"{kind}": name, f"{kind} over rated": over}
         rows.append(row)
     page.table("Largest value over rated, of torques, meshes and bearings", rows)

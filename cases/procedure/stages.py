@@ -291,12 +291,33 @@ def sentences(
     turned: Sequence[Record],
 ) -> list[Record]:
     """What the report says of both stages, beside ours."""
+    rows = of_frequencies(frequencies)
+    for name, cases in (("DLC 1.0", steady), ("DLC 1.2", gusty)):
+        rows += [of_torque(name, cases, shaft) for shaft in (LOW, HIGH)]
+    low, high = differ(swift, LOW), differ(swift, HIGH)
+    rows.append(
+        sentence(
+            "advanced models bring significant improvements in transients",
+            "4.3",
+            f"peaks of the main shaft differ by {100 * low:.2g} % of rated, of the high-speed "
+            f"shaft by {100 * high:.2g} %",
+            "holds"
+            if low > SIGNIFICANT
+            else "holds in part"
+            if high > SIGNIFICANT
+            else "does not hold",
+        )
+    )
+    show_transients(page, stages, swift, turned)
+    return rows
+
+
+def of_frequencies(frequencies: Sequence[Record]) -> list[Record]:
+    """Sentences on frequencies."""
     known = [row for row in frequencies if row["stage 1 [Hz]"] is not None]
     apart = [abs(float(row["stage 1 over stage 2 [%]"])) for row in known]
     extra = float(frequencies[len(known)]["stage 2 [Hz]"])
-    rear = stages.inertias[1]
-    own = stages.ratio**2 * float(stages.detailed.J[-1])
-    rows = [
+    return [
         sentence(
             f"second and third frequency deviate by {PRINTED[0]:g} to {PRINTED[1]:g} %",
             "4.3",
@@ -311,45 +332,40 @@ def sentences(
             "holds" if extra > 2.0 * OVER else "does not hold",
         ),
     ]
-    for name, cases in (("DLC 1.0", steady), ("DLC 1.2", gusty)):
-        for shaft in (LOW, HIGH):
-            far = max(one.apart(shaft) for one in cases)
-            most = max(
-                float(np.abs(a - b).max() / abs(b.mean()))
-                for a, b in (one.of(shaft) for one in cases)
-            )
-            rows.append(
-                sentence(
-                    f"{name}: no significant difference of the torque of the {shaft}",
-                    "4.3",
-                    f"DEL {100 * far:.2g} % apart; at any instant {100 * most:.2g} % of the mean",
-                    "holds"
-                    if max(far, most) < SIGNIFICANT
-                    else "holds in part"
-                    if most < SIGNIFICANT
-                    else "does not hold",
-                )
-            )
-    moved = max(differ(swift, shaft) for shaft in (LOW, HIGH))
-    low = differ(swift, LOW)
-    rows.append(
-        sentence(
-            "advanced models bring significant improvements in transients",
-            "4.3",
-            f"peaks of the main shaft differ by {100 * low:.2g} % of rated, of the high-speed "
-            f"shaft by {100 * differ(swift, HIGH):.2g} %",
-            "holds" if low > SIGNIFICANT else "holds in part" if moved > SIGNIFICANT else "open",
-        )
+
+
+def of_torque(name: str, cases: Sequence[Compared], shaft: str) -> Record:
+    """The sentence on a shaft's torque in a load case."""
+    far = max(one.apart(shaft) for one in cases)
+    most = max(
+        float(np.abs(a - b).max() / abs(b.mean())) for a, b in (one.of(shaft) for one in cases)
     )
+    return sentence(
+        f"{name}: no significant difference of the torque of the {shaft}",
+        "4.3",
+        f"DEL {100 * far:.2g} % apart; at any instant {100 * most:.2g} % of the mean",
+        "holds"
+        if max(far, most) < SIGNIFICANT
+        else "holds in part"
+        if most < SIGNIFICANT
+        else "does not hold",
+    )
+
+
+def show_transients(
+    page: Page, stages: Stages, swift: Sequence[Record], turned: Sequence[Record]
+) -> None:
+    """Extremes of transients, what imbalance adds, and what explains the differences."""
+    rear = stages.inertias[1]
     page.section("Transients, and imbalance")
     page.table("Extremes over rated torque", list(swift))
     page.table("What imbalance of mass and pitch adds to the swing of the torque", list(turned))
     page.data("transients", list(swift))
     page.text(
         f"Stage 1 has all that turns behind the gear ratio in one body: {rear:.4g} kg m^2 at the "
-        f"rotor's side, of which the generator has {100 * own / rear:.0f} %. What the gears take "
-        "does not reach the high-speed shaft, so that stage 1 has too much swing there by the "
-        "inverse of that share."
+        f"rotor's side, of which the generator has {100 * share_of_generator(stages):.0f} %. What "
+        "the gears take does not reach the high-speed shaft, so that stage 1 has too much swing "
+        "there by the inverse of that share."
     )
     softer = [1.0 / (1.0 / (1.0 - share / 100.0) ** 2 - 1.0) for share in PRINTED[::-1]]
     page.text(
@@ -358,7 +374,11 @@ def sentences(
         f"stiffness of the drivetrain ({stages.shaft.stiffness:.3g} N m/rad here) would alone "
         f"lower the first frequency by the {PRINTED[1]:g} to {PRINTED[0]:g} % of the report."
     )
-    return rows
+
+
+def share_of_generator(stages: Stages) -> float:
+    """Share of the generator in all inertia behind the main shaft."""
+    return stages.ratio**2 * float(stages.detailed.J[-1]) / stages.inertias[1]
 
 
 def answer(
@@ -379,24 +399,20 @@ def answer(
     enough = [shaft for shaft, far in ((LOW, low), (HIGH, high)) if far < SIGNIFICANT]
     hold = sum(row["verdict"] == "holds" for row in rows)
     words = " and ".join(f"the {shaft}" for shaft in enough) if enough else "neither shaft"
-    own = stages.ratio**2 * float(stages.detailed.J[-1]) / stages.inertias[1]
     page.answer(
         "Is the simplest model of the drivetrain enough for torques in operation?",
         f"Stage 1 is enough for {words}: damage-equivalent torques differ by "
         f"{formatted(100 * low, 2)}\u00a0% (main shaft) and {formatted(100 * high, 2)}\u00a0% "
         "(high-speed shaft).",
         [
-            page.value(
-                "DEL of the main shaft, stage 1 against 2 [%]",
-                100.0 * low,
-                at_most=100.0 * SIGNIFICANT,
-                by="significant",
-            ),
-            page.value(
-                "DEL of the high-speed shaft, stage 1 against 2 [%]",
-                100.0 * high,
-                at_most=100.0 * SIGNIFICANT,
-                by="significant",
+            *(
+                page.value(
+                    f"DEL of the {shaft}, stage 1 against 2 [%]",
+                    100.0 * far,
+                    at_most=100.0 * SIGNIFICANT,
+                    by="significant",
+                )
+                for shaft, far in ((LOW, low), (HIGH, high))
             ),
             page.value(
                 "largest difference of a torsional frequency [%]",
@@ -409,7 +425,8 @@ def answer(
                 100.0 * differ(swift, LOW),
             ),
             page.value(
-                "share of the generator in all inertia behind the main shaft [%]", 100 * own
+                "share of the generator in all inertia behind the main shaft [%]",
+                100 * share_of_generator(stages),
             ),
             page.value("statements that hold as they stand", hold, beside=len(rows), by="tested"),
         ],

@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from fe_drivetrain.cases.procedure.machine_gaps import off_grid
 from fe_drivetrain.common import Floats, InputError
-from fe_drivetrain.dynamics import Machine
+from fe_drivetrain.dynamics import Machine, damped_by_ratio, torsional
 from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
     ROTOR,
@@ -33,12 +32,20 @@ from fe_drivetrain.turbine_loads.hub_loads import (
 )
 
 SHAFTS = "shafts"
+RATIO = 0.01  # of critical damping, of each shaft and mesh
 RATE = 100.0  # Hz
 SETTLED = 60.0  # s, left out at the beginning
 PITCH_ERRORS = (math.radians(0.3), 0.0, math.radians(-0.3))
 """Pitch of blades 3, 1 and 2 of the report, beyond the controller's: blade 3 is blade 1 here."""
 SURPLUS = 0.01
 """Share of its mass that blade 3 of the report is heavier by."""
+
+
+def off_grid(machine: Machine) -> Torsional:
+    """The machine in torsion, its generator with a torque in place of the grid's spring."""
+    free = machine.generator.model_copy(update={"stiffness": 0.0})
+    system = torsional(machine.model_copy(update={"generator": free}))
+    return damped_by_ratio(system, {element.name: RATIO for element in system.elements})
 
 
 @dataclass(frozen=True)

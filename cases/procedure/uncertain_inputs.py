@@ -293,7 +293,10 @@ def sentences(
     damping = inputs[-1]
     of_damping = {name: abs(slopes[damping.name][name]) * damping.spread for name in QUANTITIES}
     of = {name: width.first_order / width.sampled for name, width in widths.items()}
-    far = {name: abs(share - 1.0) > NEAR for name, share in of.items()}
+    far = {
+        name: abs(width.first_order - width.sampled) > max(NEAR * width.sampled, width.band)
+        for name, width in widths.items()
+    }
     ranks = [weightiest(inputs, slopes, name).name for name in (FIRST, DAMAGE)]
     stiff = {element.name: element.stiffness for element in stages.detailed.elements}
     by_ratio = stiff[stages.low] / (stiff[stages.high] * stages.ratio**2)
