@@ -30,7 +30,8 @@ SHAPES = ((0.8, 0.15), (0.5, 0.25))  # depth, s
 MORE = ((1.0, 0.5), (0.8, 0.5), (0.2, 0.15), (1.0, 0.15))
 SECONDS = 2.5
 """Length of a dip in a quick run [s]: the swing decays for longer, below its first peaks."""
-HERO = "Force of the bearing that an offset of the gearbox loads most, over one turn of the rotor"
+HERO = "Force of {} in a voltage dip, gearbox aligned and beside its axis"
+TURN = "Force of {} over one turn of the rotor"
 
 
 @case(
@@ -66,7 +67,7 @@ def run(run: Run, page: Page) -> None:
     mains = main_channels(drivetrain)
     rows = [*of_misalignment(page, found, mains), *of_dips(page, dips, both, still, found[0])]
     check(page, found, dips, both)
-    show(page, found, dips)
+    show(page, found, dips, both)
     page.section("What the report says, and what the drivetrain does")
     page.table("Sentences of section 4.2 and 4.3", rows)
     page.data("sentences", rows)
@@ -166,26 +167,44 @@ def show(
     page: Page,
     found: Sequence[Misaligned],
     dips: Mapping[tuple[float, float], TransientResult],
+    both: TransientResult,
 ) -> None:
     """Forces over time, and tables of changes and peaks."""
     page.section("Misalignment")
     curves = []
-    for one in found:
-        times, values = one.result.samples.course(found[0].worst, 1500)
-        curves.append(trace(one.name, times, values / 1e3))
-    page.chart(f"{HERO}: {found[0].worst}", curves, "time [s]", "force [kN]")
+    for moved in found:
+        times, values = moved.result.samples.course(found[0].worst, 1500)
+        curves.append(trace(moved.name, times, values / 1e3))
+    page.chart(TURN.format(bearing_of(found)), curves, "time [s]", "force [kN]")
     page.table("Largest changes of forces of bearings", changed_rows(found))
     page.section("Voltage dips")
+    dip = dips[SHAPES[0]]
+    page.chart(
+        HERO.format(bearing_of(found)),
+        [
+            trace(name, times, values / 1e3)
+            for name, one in (("aligned", dip), (found[0].name, both))
+            for times, values in (one.samples.course(found[0].worst, 2000),)
+        ],
+        "time [s]",
+        "force [kN]",
+        events=dip.marks,
+    )
     rows: list[Record] = []
-    for (depth, length), dip in dips.items():
-        row: Record = {"depth": depth, "length [s]": length, "level": dip.level}
+    for (depth, length), one in dips.items():
+        row: Record = {"depth": depth, "length [s]": length, "level": one.level}
         for kind in ("torque", "mesh", "bearing"):
-            name, over = peak_of(dip, kind)
+            name, over = peak_of(one, kind)
             row |= {f"{kind}": name, f"{kind} over rated": over}
         rows.append(row)
     page.table("Largest value over rated, of torques, meshes and bearings", rows)
     page.data("dips", rows)
     page.add(next(iter(dips.values())).over_time("bearing"))
+
+
+def bearing_of(found: Sequence[Misaligned]) -> str:
+    """The bearing that the first misalignment loads most."""
+    return found[0].worst.removeprefix("force of ")
 
 
 def changed_rows(found: Sequence[Misaligned]) -> list[Record]:
@@ -229,10 +248,10 @@ def answer(
             page.value("largest force of a bearing in a dip, over rated", bearing),
             page.value("statements that hold as they stand", hold, beside=len(rows), by="tested"),
         ],
-        hero=f"{HERO}: {found[0].worst}",
+        hero=HERO.format(bearing_of(found)),
         cautions=[
-            f"The report agrees on no size of misalignment: {1e3 * offset:g} mm here, and forces "
-            "are proportional to it.",
+            f"The report agrees on no size of misalignment: {1e3 * offset:g} mm here, and constraining "
+            "forces are proportional to it.",
             f"Bearings have no clearance here, and the housing stands "
             f"{'on its mount' if mounted else 'on the ground'}: clearance"
             f"{'' if mounted else ' and a mount'} would take up a part of an offset.",

@@ -48,7 +48,7 @@ SIGNIFICANT = 0.02
 """Difference of a torque from which it is called significant; the report states no bound."""
 PRINTED = 1.5, 3.0  # % of the second and third frequency
 OVER = 10.0  # Hz
-SHOWN = "Torque of the main shaft in a steady wind of {:g} m/s: both stages"
+SHOWN = "Torque of the shafts in a steady wind of {:g} m/s, both stages"
 LOW, HIGH = "main shaft", "high-speed shaft"
 FINE = 1e-3  # s, of transients
 
@@ -398,7 +398,12 @@ def answer(
     )
     enough = [shaft for shaft, far in ((LOW, low), (HIGH, high)) if far < SIGNIFICANT]
     hold = sum(row["verdict"] == "holds" for row in rows)
-    words = " and ".join(f"the {shaft}" for shaft in enough) if enough else "neither shaft"
+    words = {
+        (): "neither shaft",
+        (LOW,): "the main shaft, not the high-speed shaft",
+        (HIGH,): "the high-speed shaft, not the main shaft",
+        (LOW, HIGH): "both shafts",
+    }[tuple(enough)]
     page.answer(
         "Is the simplest model of the drivetrain enough for torques in operation?",
         f"Stage 1 is enough for {words}: damage-equivalent torques differ by "

@@ -84,4 +84,4 @@ def test_stage_1_is_enough_for_the_main_shaft_and_not_for_the_high_speed_shaft(
     same = "DLC 1.{}: no significant difference of the torque of the {}"
     assert verdict[same.format(0, "main shaft")] == "holds"
     assert verdict[same.format(2, "high-speed shaft")] != "holds"
-    assert "enough for the main shaft:" in results.answer.verdict
+    assert "enough for the main shaft, not the high-speed shaft:" in results.answer.verdict
