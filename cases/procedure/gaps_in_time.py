@@ -250,8 +250,8 @@ def answer(
         ],
         hero=HERO.format(bearing_of(found)),
         cautions=[
-            f"The report agrees on no size of misalignment: {1e3 * offset:g} mm here, and constraining "
-            "forces are proportional to it.",
+            f"The report agrees on no size of misalignment: {1e3 * offset:g} mm here, and "
+            "constraining forces are proportional to it.",
             f"Bearings have no clearance here, and the housing stands "
             f"{'on its mount' if mounted else 'on the ground'}: clearance"
             f"{'' if mounted else ' and a mount'} would take up a part of an offset.",
