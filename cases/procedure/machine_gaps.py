@@ -3,6 +3,7 @@
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.procedure.two_stages import RATIO, off_grid
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import (
     ConvergenceInTime,
@@ -16,11 +17,9 @@ from fe_drivetrain.dynamics import (
     Machine,
     assemble,
     assembly,
-    damped_by_ratio,
     machine_of,
     machine_system,
     system_modes,
-    torsional,
 )
 from fe_drivetrain.dynamics.torsion import GENERATOR, ROTOR, Torsional, natural_modes
 from fe_drivetrain.procedure import (
@@ -41,7 +40,6 @@ from fe_drivetrain.report.number_text import certain_value, formatted
 from fe_drivetrain.report.suite import ChosenDrivetrain, Page, Record, Run, check_in_time
 
 DEFAULT = "nrel_750kw"
-RATIO = 0.01  # of critical damping
 RPM = 2.0 * np.pi / 60.0  # rad/s
 DEPTHS, SECONDS = (0.2, 0.5, 0.8, 1.0), (0.1, 0.15, 0.25, 0.5)  # of the torque, s
 START = 0.2  # s
@@ -284,13 +282,6 @@ def dips(page: Page, machine: Machine, torque: float) -> None:
     page.add(mark_events(torques, {"dip": START, "end of it": START + SECONDS[1]}))
     page.table(f"By depth and duration; first frequency {frequency:.3g} Hz", rows)
     page.assume("damping ratio of the drivetrain", RATIO, "", "the drivetrain's file has none")
-
-
-def off_grid(machine: Machine) -> Torsional:
-    """The machine in torsion, its generator with a torque in place of the grid's spring."""
-    free = machine.generator.model_copy(update={"stiffness": 0.0})
-    system = torsional(machine.model_copy(update={"generator": free}))
-    return damped_by_ratio(system, {element.name: RATIO for element in system.elements})
 
 
 def name_of(depth: float, seconds: float, end: str) -> str:

@@ -19,24 +19,19 @@ from fe_drivetrain.procedure import (
     ChannelFile,
     Fit,
     Twist,
-    least_squares,
-    logarithmic_decrement,
-    method_a,
-    method_b,
-    method_c,
-    ratio_by_ranges,
+    answers_by_methods,
+    decay_after,
     read_channels,
     spectral_fit,
-    stiffness_by_ranges,
+    twist_of,
 )
 from fe_drivetrain.report import marked, trace
-from fe_drivetrain.report.number_text import formatted, value_text
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import ChosenDrivetrain, Page, Record, Run
 
 MEASURED = "measured"
 """Key of the setting that names the record."""
 LOOP = "Torque against twist as measured, and the stiffness that the fit finds"
-WINDOW, STOP_PEAKS = 5.0, 6  # s of Eq 4 and 5; peaks of a decay
 STIFFNESS, DAMPING, INERTIA = "stiffness [N m/rad]", "damping [N m s/rad]", "inertia [kg m^2]"
 
 
@@ -121,11 +116,10 @@ def recorded(run: Run, chosen: ChosenDrivetrain) -> Recorded:
     front, rear = found.of("front"), found.of("rear") / ratio
     step = found.step
     angle = front - rear
-    rate = np.gradient(angle, step)
     turns = abs(float(front[-1] - front[0])) / (2.0 * np.pi * speed)
     seconds = step * (len(front) - 1)
     turn = seconds / turns if turns >= 1.0 else 2.0 * np.pi / chosen.rotor_speeds()[1]
-    twist = Twist(step, found.of("torque"), angle, rate, np.asarray(np.gradient(rate, step)))
+    twist = twist_of(found.of("torque"), angle, step)
     free = natural_modes(gear_masses(gear_table(machine), "free"))
     return Recorded(found.source, what, twist, turn, stiffness, float(free.frequencies[1]))
 
@@ -151,43 +145,16 @@ def measured_part(run: Run, machine: Machine) -> tuple[str, float, float, float]
 
 def by_methods(one: Recorded, fit: Fit) -> list[Record]:
     """All methods, a row each."""
-    stiffness = float(np.median(stiffness_by_ranges(one.twist, WINDOW)))
-    ratio = float(np.median(ratio_by_ranges(one.twist, WINDOW)))
-    rows = [
-        row_of("Eq 4, ranges", None, None, stiffness, f"windows of {WINDOW:g} s"),
-        row_of("Eq 5, ranges", None, None, None, f"inertia over damping {ratio:.4g} s"),
+    return [
+        {
+            "method": found.method,
+            INERTIA: found.inertia,
+            DAMPING: found.damping,
+            STIFFNESS: found.stiffness,
+            "what else": found.words,
+        }
+        for found in answers_by_methods(one.twist, one.turn, fit, one.band)
     ]
-    for method, found in (
-        ("A, time", method_a(one.twist, stiffness, ratio)),
-        ("B, differential", method_b(one.twist, one.turn)),
-        ("C, constant", method_c(one.twist, one.turn, stiffness)),
-    ):
-        inertia, damping = found.medians()
-        share = 100.0 * float(found.plausible.mean())
-        rows.append(row_of(method, inertia, damping, None, f"{share:.0f} % of answers above zero"))
-    J, D, K = (float(v) for v in least_squares(one.twist).values)
-    rows.append(row_of("least squares", J, D, K, "noise of the twist biases it"))
-    bands = [formatted(float(band), 2) for band in fit.bands]
-    J, D, K = (float(v) for v in fit.values)
-    words = f"bands {', '.join(bands)}; {one.band[0]:.3g} to {one.band[1]:.3g} Hz"
-    return [*rows, row_of("fit of spectra", J, D, K, words)]
-
-
-def row_of(
-    method: str,
-    inertia: float | None,
-    damping: float | None,
-    stiffness: float | None,
-    words: str,
-) -> Record:
-    """A row of the table."""
-    return {
-        "method": method,
-        INERTIA: inertia,
-        DAMPING: damping,
-        STIFFNESS: stiffness,
-        "what else": words,
-    }
 
 
 def check_halves(page: Page, one: Recorded) -> None:
@@ -214,14 +181,7 @@ def check_halves(page: Page, one: Recorded) -> None:
 def after_stop(run: Run, page: Page, one: Recorded, ratio: float) -> list[tuple[str, float, float]]:
     """Damping ratio and frequency by the decrement, each beside that of the file."""
     stop, step = run.positive("stop"), one.twist.step
-    late = one.twist.angle[round(stop / step) :]
-    if len(late) < 10:
-        raise InputError(
-            f"stop = {stop:g} s is at the end of a record of {len(one.twist.angle) * step:g} s: "
-            "give the time at which the torque was lost, from its begin"
-        )
-    swing = late - late[len(late) // 2 :].mean()
-    decay = logarithmic_decrement(swing, step, STOP_PEAKS)
+    decay, swing = decay_after(one.twist.angle, step, stop)
     page.section("Stop")
     page.chart(
         f"Twist after the stop; decrement {decay.decrement:.4f}, damping ratio {decay.ratio:.4f}",

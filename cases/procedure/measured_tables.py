@@ -5,7 +5,8 @@ import json
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.procedure.slewing_drives import AXIAL, DIAMETER, MOMENT, PITCH, RADIAL, YAW
+from fe_drivetrain.cases.procedure.pitch_loads import Pitched, pitched
+from fe_drivetrain.cases.procedure.slewing_drives import PITCH, YAW
 from fe_drivetrain.common import Floats, wrench_transport
 from fe_drivetrain.comparison import round_off
 from fe_drivetrain.procedure import (
@@ -18,18 +19,12 @@ from fe_drivetrain.procedure import (
 from fe_drivetrain.report import chart, mark_events, trace
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
-from fe_drivetrain.turbine_loads.hub_loads import (
-    Condition,
-    Rotor,
-    designed_controller,
-    similar_turbine,
-    turbine_histories,
-)
+from fe_drivetrain.turbine_loads.hub_loads import ROOT_LOADS
 
 OVERHANG, HEIGHT = 3.5, 2.0  # m, hub before the tower's axis and above its top
 NACELLE = 80e3 * 9.81, 0.8  # N without the rotor, m behind the tower's axis
 TORQUE = "Torque of the pitch motor at 17 m/s"
-PINION, TORSION = 12.0, 8e3  # turns of the pinion for one of the blade; N m, held
+PINION = 12.0  # turns of the pinion for one of the blade
 
 
 @case(
@@ -38,17 +33,11 @@ PINION, TORSION = 12.0, 8e3  # turns of the pinion for one of the blade; N m, he
 )
 def run(run: Run, page: Page) -> None:
     """One wind speed above rated: pitch system, and the tower's top while the nacelle yaws."""
-    turbine = similar_turbine(Rotor())
     with run.step("turbine"):
-        (made,) = turbine_histories(
-            [Condition(17.0, "medium", 0.2, 1)],
-            turbine,
-            designed_controller(turbine),
-            duration=60.0 if run.quick else 600.0,
-        )
-    step = float(made.history.time[1] - made.history.time[0])
-    pitched, motor = pitch_channels(made.pitch, step)
-    channels = pitched | yaw_channels(made.history.loads, step)
+        one = pitched(17.0, 60.0 if run.quick else 600.0)
+    made, step = one.roots.made, one.step
+    of_pitch, motor = pitch_channels(one)
+    channels = of_pitch | yaw_channels(made.history.loads, step)
     listed = listed_quantities()
     tables = {name: filled_table(listed.of(name), channels, step) for name in ("5.3", "6.3", "6.4")}
     show_tables(page, tables)
@@ -125,7 +114,8 @@ def answer(
         ],
         hero=TORQUE,
         cautions=[
-            "Loads of the pitch bearing are held at constant values: only motion and inertia vary."
+            "Torsion of a blade's root is that of bent blades alone: aerofoils' pitching moments "
+            "are left out."
         ],
     )
 
@@ -156,21 +146,18 @@ def check_durations(page: Page, given: list[Record], duration: float) -> None:
     )
 
 
-def pitch_channels(pitch: Floats, step: float) -> tuple[dict[str, Floats], float]:
-    """Motion and torques of the pitch drive, and its largest torque."""
-    speed = np.gradient(pitch, step)
-    acceleration = np.gradient(speed, step)
-    resists = np.full(len(speed), float(friction_torque(MOMENT, AXIAL, RADIAL, DIAMETER)))
-    load = np.full(len(speed), TORSION)
-    motor = drive_torque(PITCH, load, resists, speed, acceleration)
-    ring = ring_torque(PITCH, load, resists, speed, acceleration)
+def pitch_channels(one: Pitched) -> tuple[dict[str, Floats], float]:
+    """Loads of the bearing, motion and torques of the pitch drive, and its largest torque."""
+    load, resists, motor = one.about_axis(), one.friction(), one.motor()
+    ring = ring_torque(PITCH, load, resists, one.speed, one.acceleration)
     found = {
-        "pitch angle": pitch,
-        "pitch speed": speed,
+        **{name: one.loads[:, k] for k, name in enumerate(ROOT_LOADS)},
+        "pitch angle": one.pitch,
+        "pitch speed": one.speed,
         "pinion torque": ring / PINION,
         "motor torque": motor,
-        "motor speed": PITCH.ratio * speed,
-        "angle of pinion against ring": (PINION - 1.0) * pitch,
+        "motor speed": PITCH.ratio * one.speed,
+        "angle of pinion against ring": (PINION - 1.0) * one.pitch,
         "reaction of the transmission": -ring / PINION,
     }
     return found, float(np.abs(motor).max())

@@ -6,15 +6,12 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure.pitch_and_yaw_answer import SHUTDOWN, answer
+from fe_drivetrain.cases.procedure.pitch_loads import pitched, show_drive, show_loads
 from fe_drivetrain.cases.procedure.slewing_drives import (
-    AXIAL,
     BRIDGES,
     DEFICIT,
-    DIAMETER,
     DURATION,
-    MOMENT,
     PITCH,
-    RADIAL,
     STEP,
     STOP_RAMP,
     TEETH,
@@ -41,13 +38,6 @@ from fe_drivetrain.procedure import (
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.turbine_loads.histories import Levels, even_levels, time_at_level
-from fe_drivetrain.turbine_loads.hub_loads import (
-    Condition,
-    Rotor,
-    designed_controller,
-    similar_turbine,
-    turbine_histories,
-)
 
 PAUSE = 120.0  # s
 BRAKES, MOTOR = (100.0, 200.0, 400.0), 150.0  # N m, at the motors of the yaw drives, all together
@@ -188,47 +178,37 @@ def show_shutdown(page: Page, stop: Stop) -> None:
 
 def pitching(run: Run, page: Page) -> Floats:
     """Teeth in mesh and heat of the motor while a controller pitches above rated."""
-    turbine = similar_turbine(Rotor())
     winds = WINDS[1:3] if run.quick else WINDS
     length = 60.0 if run.quick else 600.0
-    made = turbine_histories(
-        [Condition(v, "medium", 0.2, 1) for v in winds],
-        turbine,
-        designed_controller(turbine),
-        duration=length,
-    )
+    made = [pitched(wind, length) for wind in winds]
     counts: Floats = np.zeros(TEETH)
     rows: list[Record] = []
-    for wind, found in zip(winds, made, strict=True):
-        step = float(found.history.time[1] - found.history.time[0])
-        speed = np.gradient(found.pitch, step)
-        friction = np.full(len(speed), float(friction_torque(MOMENT, AXIAL, RADIAL, DIAMETER)))
-        load = np.full(len(speed), 8e3)
-        torque = drive_torque(PITCH, load, friction, speed, np.gradient(speed, step))
-        teeth = tooth_counts(found.pitch, TEETH)
-        travel = float(np.abs(np.diff(found.pitch)).sum())
+    for one in made:
+        torque = one.motor()
+        teeth = tooth_counts(one.pitch, TEETH)
+        travel = float(np.abs(np.diff(one.pitch)).sum())
         page.equals(
-            f"{wind:g} m/s: meshes of all teeth",
+            f"{one.wind:g} m/s: meshes of all teeth",
             float(teeth.sum()),
             travel * TEETH / (2.0 * np.pi),
-            **round_off(10 * len(found.pitch), "the travel between samples, tooth by tooth"),
+            **round_off(10 * len(one.pitch), "the travel between samples, tooth by tooth"),
             source="travel over the pitch of the teeth",
             measure="identity",
         )
         counts += teeth
         rows.append(
             {
-                "wind [m/s]": wind,
-                "pitch, least [deg]": float(np.degrees(found.pitch.min())),
-                "largest [deg]": float(np.degrees(found.pitch.max())),
+                "wind [m/s]": one.wind,
+                "pitch, least [deg]": float(np.degrees(one.pitch.min())),
+                "largest [deg]": float(np.degrees(one.pitch.max())),
                 "travel [deg/min]": float(np.degrees(travel)) / length * 60.0,
-                "thermal torque of 600 s [N m]": thermal_torque(torque, step),
+                "thermal torque of 600 s [N m]": thermal_torque(torque, one.step),
                 "largest torque [N m]": float(np.abs(torque).max()),
             }
         )
     quarter = int(np.ceil(TEETH / 4))
     page.section("Pitching above rated")
-    page.table("Pitching by a controller, by wind speed; loads of the bearing held", rows)
+    page.table("Pitching by a controller, by wind speed; loads of the turbine that moves", rows)
     page.chart(
         f"Meshes of the teeth in the first quarter of a blade's ring of {TEETH}, all wind speeds",
         [
@@ -243,6 +223,8 @@ def pitching(run: Run, page: Page) -> Floats:
         "meshes",
     )
     page.data("pitching", rows)
+    show_drive(page, made)
+    show_loads(page, made)
     return counts
 
 

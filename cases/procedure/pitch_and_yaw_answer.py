@@ -5,13 +5,18 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.common.typeset import MINUS
 from fe_drivetrain.report.suite import Page
 
+BENDING = "root bending z"
+"""Flapwise moment of a blade's root, about the way that it turns."""
 SHUTDOWN = "Torque of the pitch motor over a shutdown from 0 to 70 degrees"
 
 
 def answer(page: Page, counts: Floats) -> None:
     """State the torque of a shutdown, by Eq 5.1 as printed and with its signs put right."""
     right, printed = (float(row["largest torque [N m]"]) for row in page.tables["shutdown"])
-    hottest = max(float(row["thermal torque of 600 s [N m]"]) for row in page.tables["pitching"])
+    drive = page.tables["pitch_drive"]
+    worst = max(drive, key=lambda row: float(row["thermal torque of 600 s [N m]"]))
+    loads = [row for row in page.tables["pitch_bearing_loads"] if row["channel"] == BENDING]
+    bending = max(loads, key=lambda row: float(row["equivalent range at 1 Hz"]))
     (yawing,) = page.tables["yawing"]
     page.answer(
         "What torque do pitch and yaw motors need, and does Eq 5.1 of PROTEST give it?",
@@ -25,8 +30,18 @@ def answer(page: Page, counts: Floats) -> None:
                 beside=printed,
                 by="Eq 5.1",
             ),
-            page.judged("stop: work of the motor", "work of a shutdown", "load and friction"),
-            page.value("thermal torque of the pitch motor, worst wind [N m]", hottest),
+            page.value(
+                "thermal torque of the pitch motor, worst wind [N m]",
+                float(worst["thermal torque of 600 s [N m]"]),
+                beside=float(worst["thermal, held [N m]"]),
+                by="loads held",
+            ),
+            page.value(
+                "flapwise moment of the pitch bearing, equivalent range [kN m]",
+                float(bending["equivalent range at 1 Hz"]),
+                beside=0.0,
+                by="loads held",
+            ),
             page.value(
                 "thermal torque of the yaw motors [N m]",
                 float(yawing["thermal torque of 600 s [N m]"]),
@@ -43,6 +58,10 @@ def answer(page: Page, counts: Floats) -> None:
             ),
         ],
         hero=SHUTDOWN,
-        cautions=["Inertias, ratios and loads of the drives are assumed, of a machine of 2 MW."],
+        cautions=[
+            "Inertias and ratios of the drives are assumed, of a machine of 2 MW.",
+            "Loads of the pitch bearing are those of a turbine that moves; in the shutdown, and of "
+            "yaw drives, they are assumed.",
+        ],
         claim="does not hold",
     )

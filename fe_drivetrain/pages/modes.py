@@ -14,6 +14,7 @@ from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.drivetrain_modes import SHOWN, ModesResult
 from fe_drivetrain.studies.mode_findings import crossing_row, excited, level_rows, mode_rows
+from fe_drivetrain.studies.mode_register import margin_chart, register_rows
 
 DRAWN = 8
 """Number of modes whose shapes are drawn."""
@@ -84,6 +85,13 @@ def _show_register(page: Page, result: ModesResult) -> None:
         page.table("Excitations that meet a mode that they can drive, or come near", rows)
     else:
         page.text("No excitation meets a mode that it can drive, or comes near.")
+    page.table(
+        "Every excitation over the range of speeds, and the mode that it can drive next to it",
+        register_rows(result),
+    )
+    margins = margin_chart(result)
+    if margins is not None:
+        page.add(margins)
     counts = {
         word: sum(one.verdict == word for one in result.meetings)
         for word in ("resonance", "near", "clear", "not excited")

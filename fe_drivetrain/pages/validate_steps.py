@@ -16,7 +16,11 @@ from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Table
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
-from fe_drivetrain.studies.project_validation import ValidateResult, as_record
+from fe_drivetrain.studies.project_validation import (
+    ValidateResult,
+    as_record,
+    identification_rows,
+)
 
 
 def evidence_table(evidence: Sequence[Found], reports: Path, folder: Path) -> Table:
@@ -225,6 +229,16 @@ def _comparison(page: Page, result: ValidateResult) -> None:
             for v in result.measured.verdicts
         ],
     )
+    if result.measured.methods:
+        page.table(
+            "Stiffness, damping and inertia by each method of PROTEST 2010, and by fits",
+            identification_rows(result.measured),
+        )
+        page.text(
+            "Equations 4 to 13 are taken as printed; a shaft's torque has no inertia in it, and "
+            "ranges drop the phase, so that methods A to C do not hold. What is judged is the fit "
+            "of spectra, and the decrement where a stop is stated."
+        )
 
 
 STEP_SECTIONS = (_failure_modes, _model, _load_cases, _inputs, _campaign, _comparison)

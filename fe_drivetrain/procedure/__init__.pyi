@@ -50,6 +50,7 @@ from .identification import ratio_by_ranges as ratio_by_ranges
 from .identification import reduced_torque as reduced_torque
 from .identification import stiffness_by_ranges as stiffness_by_ranges
 from .identification import window_ranges as window_ranges
+from .identified_shaft import Outcome as Outcome
 from .interface_loads import GROUND as GROUND
 from .interface_loads import Body as Body
 from .interface_loads import Interface as Interface
@@ -67,7 +68,6 @@ from .iteration_log import procedure_of as procedure_of
 from .iteration_log import read_log as read_log
 from .iteration_log import write_log as write_log
 from .levels import level_loads as level_loads
-from .measured_channels import Outcome as Outcome
 from .measured_channels import captured as captured
 from .measured_channels import compared as compared
 from .measured_channels import faults_of_files as faults_of_files
@@ -82,6 +82,10 @@ from .measurement_cases import MeasurementCases as MeasurementCases
 from .measurement_cases import case_channels as case_channels
 from .measurement_cases import protest_measurement_cases as protest_measurement_cases
 from .measurement_cases import read_measurement_cases as read_measurement_cases
+from .methods import MethodAnswer as MethodAnswer
+from .methods import answers_by_methods as answers_by_methods
+from .methods import decay_after as decay_after
+from .methods import twist_of as twist_of
 from .misalignment import Misalignment as Misalignment
 from .misalignment import influence_of_offsets as influence_of_offsets
 from .misalignment import machine_misalignment as machine_misalignment

@@ -14,6 +14,7 @@ from typing import Any
 from fe_drivetrain.procedure.certainty import lacks_of_inputs
 from fe_drivetrain.procedure.evidence import Claim, Found
 from fe_drivetrain.procedure.failure_modes import NUMBERS, Catalogue, DesignLoad
+from fe_drivetrain.procedure.methods import MethodAnswer
 from fe_drivetrain.procedure.project import (
     SECTIONS,
     Identified,
@@ -49,6 +50,8 @@ class Measured:
         Why files of campaign and comparison are none of a measurement, in sentences.
     spreads : Mapping[str, float]
         Half width, as a share, of inputs that signals determine, by the input's name.
+    methods : Mapping[str, tuple[MethodAnswer, ...]]
+        What each method of identification finds, by the channel of the torque.
     """
 
     windows: Mapping[int, int] | None = None
@@ -56,6 +59,7 @@ class Measured:
     missing: Mapping[int, str] = field(default_factory=dict)
     faults: tuple[str, ...] = ()
     spreads: Mapping[str, float] = field(default_factory=dict)
+    methods: Mapping[str, tuple[MethodAnswer, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

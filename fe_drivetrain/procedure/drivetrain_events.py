@@ -200,8 +200,10 @@ class GridLoss(Event):
 
 
 @dataclass(frozen=True)
-class VoltageDip(Event):
+class VoltageDip(GearboxOffset, Event):
     """The generator's torque falls and comes back, as a table has it, whatever its speed.
+
+    The housing of the gearbox may stand beside the main shaft meanwhile, as in `Offset`.
 
     Attributes
     ----------
@@ -227,6 +229,7 @@ class VoltageDip(Event):
     def __post_init__(self) -> None:
         _in_range(self, start=(0.0, 1e4), depth=(0.0, 3.0), fall=(1e-4, 60.0), length=(0.0, 60.0))
         _in_range(self, recovery=(1e-4, 600.0))
+        self.check_gearbox()
         self.dip()
 
     def dip(self) -> Dip:
@@ -241,14 +244,15 @@ class VoltageDip(Event):
         shares = np.array(table.values)[at]
         pull = varying(-turning.generator_torque * turning.to_generator, times, shares)
         acting = [steady_rotor(of), pull, *turning.loads()]
-        start = wound_up(of.equations, acting, turning.velocity)
+        made = self.moved(of, of.equations)
+        start = wound_up(made, acting, turning.velocity)
         back = self.start + self.length
         marks = {
             "voltage dips": self.start,
             "it begins to recover": back,
             "recovered": back + self.recovery,
         }
-        return Planned((Phase(duration, of.equations, acting),), start, marks)
+        return Planned((Phase(duration, made, acting),), start, marks)
 
     def step(self, of: Running) -> float:
         """Half a millisecond, or a fifth of the fall."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +10,9 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.procedure.channels import ChannelFile, Channels, read_channels
-from fe_drivetrain.procedure.project import Capture, Compared, Comparison, Identified
-from fe_drivetrain.procedure.spectral_fit import spectral_fit
+from fe_drivetrain.procedure.identified_shaft import Outcome, identified
+from fe_drivetrain.procedure.methods import MethodAnswer
+from fe_drivetrain.procedure.project import Capture, Compared, Comparison
 from fe_drivetrain.report.results import Results, Verdict, judge, read_results
 from fe_drivetrain.turbine_loads.histories.cycles import rainflow_cycles
 from fe_drivetrain.turbine_loads.histories.damage import damage_equivalent_load
@@ -96,22 +96,6 @@ def statistic(values: Floats, step: float, which: Compared) -> float:
         "largest": values.max(),
     }
     return float(found[which.statistic])
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What measured channels say of a model.
-
-    Attributes
-    ----------
-    verdicts : tuple of Verdict
-        Computed against measured.
-    spreads : Mapping[str, float]
-        Half width, as a share of the value, of each input that signals determine, by its name.
-    """
-
-    verdicts: tuple[Verdict, ...] = ()
-    spreads: Mapping[str, float] = field(default_factory=dict)
 
 
 def faults_of_files(
@@ -204,11 +188,13 @@ def compared(comparison: Comparison, folder: Path) -> Outcome:
         computed = read_channels(comparison.computed, folder, names)
         verdicts = [_judged(q, measured, computed) for q in comparison.quantities]
     spreads: dict[str, float] = {}
+    methods: dict[str, tuple[MethodAnswer, ...]] = {}
     for one in comparison.identified:
-        found, determined = _identified(one, measured)
-        verdicts += found
-        spreads |= determined
-    return Outcome(tuple(verdicts), spreads)
+        found = identified(one, measured)
+        verdicts += found.verdicts
+        spreads |= found.spreads
+        methods |= found.methods
+    return Outcome(tuple(verdicts), spreads, methods)
 
 
 def _judged(which: Compared, measured: Channels, computed: Channels) -> Verdict:
@@ -228,38 +214,3 @@ def _judged(which: Compared, measured: Channels, computed: Channels) -> Verdict:
         source=f"measured: {Path(measured.source).name}",
         unit=units[0],
     )
-
-
-def _identified(one: Identified, measured: Channels) -> tuple[list[Verdict], Mapping[str, float]]:
-    """K and D of ``T = K x + D x'``: the torque is that in the shaft, so that I comes out as 0."""
-    for name, unit in ((one.torque, "N m"), (one.front, "rad"), (one.rear, "rad")):
-        if measured.units[name] != unit:
-            raise InputError(
-                f"{measured.source}: channel {name!r} is in {measured.units[name]!r} but must be "
-                f"in {unit} or a multiple: map another column"
-            )
-    twist = measured.of(one.front) - measured.of(one.rear) / one.ratio
-    fit = spectral_fit(measured.of(one.torque), twist, measured.step, one.band)
-    wanted = [("stiffness", one.stiffness, 2, "N m/rad")]
-    if one.damping is not None:
-        wanted.append(("damping", one.damping, 1, "N m s/rad"))
-    names = {2: one.stiffness_of, 1: one.damping_of}
-    spreads = {
-        name: float(abs(fit.bands[place] / fit.values[place]))
-        for place, name in names.items()
-        if name
-    }
-    return [
-        judge(
-            f"{name} from {one.torque}, {one.front}, {one.rear}",
-            model,
-            float(fit.values[place]),
-            tolerance=one.tolerance,
-            reason=f"the project's tolerance; the signals determine it within "
-            f"{fit.bands[place]:.3g} {unit}",
-            source=f"identified from lines of the spectra of {Path(measured.source).name}, "
-            f"{one.band[0]:g} to {one.band[1]:g} Hz",
-            unit=unit,
-        )
-        for name, model, place, unit in wanted
-    ], spreads

@@ -243,6 +243,15 @@ class Identified(_Part):
         default=None, description="the model's [N m s/rad]"
     )
     tolerance: Share = Field(description="allowed difference over the identified value")
+    turn: Annotated[float, Field(gt=0.0)] | None = Field(
+        default=None,
+        description="mean time of a turn of the rotor [s]: with it, what methods A to C give",
+    )
+    stop: Annotated[float, Field(ge=0.0)] | None = Field(
+        default=None,
+        description="when the torque was lost, from the first sample [s]: the damping is held "
+        "against the decrement, too",
+    )
     stiffness_of: str = Field(default="", description="input of step 4 that the stiffness is")
     damping_of: str = Field(default="", description="input of step 4 that the damping is")
 

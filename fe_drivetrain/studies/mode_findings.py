@@ -13,6 +13,7 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.mode_levels import FIRST
 from fe_drivetrain.studies.mode_record import Modes
+from fe_drivetrain.studies.mode_register import register_rows
 from fe_drivetrain.studies.unused import RPM
 
 MARGIN = "least margin of an excited frequency"
@@ -165,6 +166,7 @@ def _tables(found: Findings, modes: Modes, shown: int) -> None:
         found.data("campbell", rows)
     if modes.speeds is not None:
         found.data("crossings", [crossing_row(one, modes) for one in excited(modes)])
+        found.data("register", register_rows(modes))
 
 
 def _check_energy(found: Findings, modes: Modes) -> None:

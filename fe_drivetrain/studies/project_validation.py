@@ -24,9 +24,9 @@ from fe_drivetrain.procedure.evidence import (
 )
 from fe_drivetrain.procedure.evidence import Found as FoundEvidence
 from fe_drivetrain.procedure.failure_modes import Catalogue, protest_catalogue, read_catalogue
+from fe_drivetrain.procedure.identified_shaft import Outcome
 from fe_drivetrain.procedure.iteration_log import Entry
 from fe_drivetrain.procedure.measured_channels import (
-    Outcome,
     captured,
     compared,
     faults_of_files,
@@ -147,6 +147,8 @@ def validate(project: Project, folder: Path, *, report: Progress = silent) -> Va
     _answer(found, project, states, measured, digest)
     _judge(found, project, states, measured, digest)
     _data(found, project, states, record, digest)
+    if measured.methods:
+        found.data("identification", identification_rows(measured))
     return ValidateResult(
         project=project,
         catalogue=catalogue,
@@ -227,6 +229,28 @@ def as_record(found: FoundEvidence) -> Record:
     }
 
 
+def identification_rows(measured: Measured) -> list[Record]:
+    """What each method of identification finds of a record, as records.
+
+    Parameters
+    ----------
+    measured : Measured
+        What channels gave.
+    """
+    return [
+        {
+            "torque": channel,
+            "method": one.method,
+            "inertia [kg m^2]": one.inertia,
+            "damping [N m s/rad]": one.damping,
+            "stiffness [N m/rad]": one.stiffness,
+            "what else": one.words,
+        }
+        for channel, answers in measured.methods.items()
+        for one in answers
+    ]
+
+
 def _is_complete(states: Sequence[StepState]) -> bool:
     return all(state.complete for state in states)
 
@@ -276,6 +300,7 @@ def _measured(
         missing,
         faults,
         outcome.spreads,
+        outcome.methods,
     )
     return measured, matrix
 

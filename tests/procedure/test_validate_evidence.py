@@ -336,12 +336,15 @@ def test_signals_give_the_spread_of_an_input_that_they_determine(
         "stiffness": 3.69e7,
         "tolerance": 0.05,
         "stiffness_of": "stiffness of shafts: LSS",
+        "turn": 4.0,
     }
     small["comparison"]["identified"] = [identified]
     small["inputs"]["values"][0] |= {"band": None, "measured_by": "torque"}
     standing = validate_project(Project.model_validate(small), tmp_path)
     assert standing.states[3].lacks == ()
     assert 0.0 < standing.measured.spreads["stiffness of shafts: LSS"] < 0.05
+    methods = [row["method"] for row in standing.tables["identification"]]
+    assert {"A, time", "B, differential", "C, constant", "fit of spectra"} <= set(methods)
     change(small, "inputs.values.0.value", 4e7)
     assert "is 40000000.0 N m/rad in step 4 and 36900000.0" in lacks_of(small, tmp_path, 6)
     change(small, "comparison.identified.0.stiffness_of", "")

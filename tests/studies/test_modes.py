@@ -31,6 +31,7 @@ from fe_drivetrain.procedure.assessment import needed_of
 from fe_drivetrain.procedure.project import Need
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.studies.drivetrain_modes import ModesResult, modes
+from fe_drivetrain.studies.mode_register import margin_chart, margins_of
 
 RPM = math.pi / 30.0
 ROTOR, GENERATOR, SHAFT = 4e6, 9e5, 2e8  # kg m^2, kg m^2, N m/rad
@@ -141,6 +142,25 @@ def test_crossings_by_hand() -> None:
     assert {one.excitation for one in found.resonances} == inside.keys()
     (margin,) = [one for one in found.meetings if one.excitation == "1P"]
     assert margin.margin == pytest.approx(1.0 - 40.0 / 60.0 / frequency)
+
+
+def test_the_register_has_the_least_margin_of_each_excitation_over_the_speeds() -> None:
+    found = modes(two_inertias(), speeds=RANGE)
+    rows = {row["excitation"]: row for row in found.tables["register"]}
+    assert rows.keys() == {one.name for one in found.excitations}
+    frequency, (low, high) = float(found.frequencies[0]), RANGE
+    assert rows["1P"]["least margin [%]"] == pytest.approx(100.0 - 4000.0 / 60.0 / frequency)
+    assert rows["1P"]["at the largest speed [Hz]"] == pytest.approx(high / (2.0 * math.pi))
+    for order in (3, 6, 9):
+        inside = low < 2.0 * math.pi * frequency / order < high
+        assert rows[f"{order}P"]["crossings"] == inside
+    assert sum(row["verdict"] == "resonance" for row in rows.values()) > 1
+    speeds = np.linspace(low, high, 20001)
+    for one in found.excitations:
+        least = 100.0 * float(margins_of(one, found, speeds).min())
+        assert rows[one.name]["least margin [%]"] == pytest.approx(least, abs=0.1)
+    assert margin_chart(found) is not None
+    assert margin_chart(modes(two_inertias())) is None
 
 
 def test_a_fixed_frequency_meets_a_mode_at_any_speed() -> None:

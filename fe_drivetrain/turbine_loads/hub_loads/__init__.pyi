@@ -1,5 +1,9 @@
 from .aero_rotor import Rotor as Rotor
 from .aero_rotor import assumptions as assumptions
+from .blade_roots import ROOT_LOADS as ROOT_LOADS
+from .blade_roots import BladeRoots as BladeRoots
+from .blade_roots import blade_roots as blade_roots
+from .blade_roots import root_loads as root_loads
 from .channel_map import ChannelMap as ChannelMap
 from .channel_map import read_channel_map as read_channel_map
 from .controller import Controller as Controller
@@ -44,8 +48,10 @@ from .surrogate import not_kept as not_kept
 from .surrogate import operating_grid as operating_grid
 from .surrogate import surrogate_grid as surrogate_grid
 from .turbine import RIGID as RIGID
+from .turbine import BladeModes as BladeModes
 from .turbine import Physics as Physics
 from .turbine import Turbine as Turbine
+from .turbine import blade_modes as blade_modes
 from .turbine import natural_frequencies as natural_frequencies
 from .turbine import similar_turbine as similar_turbine
 from .turbine_account import EnergyAccount as EnergyAccount

@@ -30,27 +30,24 @@ from fe_drivetrain.turbine_loads.hub_loads.controller import (
     steady_operation,
 )
 from fe_drivetrain.turbine_loads.hub_loads.csv_table import write_hub_loads
-from fe_drivetrain.turbine_loads.hub_loads.histories import MIN_SAMPLES, Attribute, LoadHistory
+from fe_drivetrain.turbine_loads.hub_loads.histories import Attribute, LoadHistory
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Recorded
 from fe_drivetrain.turbine_loads.hub_loads.surrogate import DURATION, RATE, Condition, made_by
 from fe_drivetrain.turbine_loads.hub_loads.turbine import Physics, Turbine
 from fe_drivetrain.turbine_loads.hub_loads.turbine_account import STORED, EnergyAccount
 from fe_drivetrain.turbine_loads.hub_loads.turbine_parts import (
+    SETTLING,
     Inflow,
     even_inflow,
     kernel_control,
     kernel_parts,
     mean_shear,
+    turbulence_of,
 )
 from fe_drivetrain.turbine_loads.hub_loads.wind import (
     DiscTurbulence,
-    disc_turbulence,
-    length_scales,
     turbulence_sigma,
 )
-
-SETTLING = 60.0
-"""Left out at the beginning [s]: 20 lengths of the speed's answer, 15 of the slowest wake."""
 
 LONGEST_STEP = 0.025
 """Of the integration [s]: 15 in a period of the fastest mode, which it damps by 2e-4 of it."""
@@ -150,8 +147,9 @@ def simulate(
     -------
     ndarray, (n, 6)
         Hub loads [N, N m].
-    ndarray, (n, 24)
-        Pitch [rad], torque of the generator [N m], power of the air [W], wind [m/s], state.
+    ndarray, (n, 68)
+        Pitch [rad], torque of the generator [N m], power of the air [W], wind [m/s], state, its
+        rates, and the air's sums over each blade, of which `root_loads` makes loads of its root.
 
     Raises
     ------
@@ -220,9 +218,9 @@ def turbine_history(
     InputError
         Duration or rate leave too few samples, or the turbine cannot work in this wind.
     """
-    field = _field(turbine, condition.wind_speed, duration, rate)
+    field = turbulence_of(turbine, condition.wind_speed, duration, rate)
     chosen = controller or designed_controller(turbine)
-    return _turbine_history(condition, turbine, chosen, physics or Physics(), field)[0]
+    return simulated_condition(condition, turbine, chosen, physics or Physics(), field)[0]
 
 
 def accounted_history(
@@ -262,9 +260,9 @@ def accounted_history(
     InputError
         As there, or the step is not above zero.
     """
-    field = _field(turbine, condition.wind_speed, duration, rate)
+    field = turbulence_of(turbine, condition.wind_speed, duration, rate)
     chosen, moves = controller or designed_controller(turbine), physics or Physics()
-    made, books = _turbine_history(
+    made, _, books = simulated_condition(
         condition, turbine, chosen, moves, field, longest_step, harmonics, accounted=True
     )
     return made, _account(books)
@@ -322,9 +320,9 @@ def turbine_histories(
         made = _load(kept.load("hub-loads", content), condition, rate)
         if made is None:
             if field is None or condition.wind_speed != of_speed:
-                field = _field(turbine, condition.wind_speed, duration, rate)
+                field = turbulence_of(turbine, condition.wind_speed, duration, rate)
                 of_speed = condition.wind_speed
-            made = _turbine_history(condition, turbine, chosen, moves, field)[0]
+            made = simulated_condition(condition, turbine, chosen, moves, field)[0]
             arrays = {name: getattr(made, name) for name in _KEPT[1:]}
             kept.keep("hub-loads", content, {"loads": made.history.loads, **arrays})
         if progress is not None:
@@ -399,7 +397,7 @@ def _beginning(
     torque = controller.torque(speed, pitch)
     state[air.TWIST] = torque / turbine.shaft_stiffness if parts.torsion else 0.0
     mean = even_inflow(turbine, inflow.speed, np.zeros(1), inflow.rate, inflow.shear)
-    sums = np.zeros((5, max(wake.shape[1], 6)))
+    sums = np.zeros((5, max(wake.shape[1], air.SUMS)))
     wind = np.zeros((3, point.radius.size))
     air.met_wind(parts, mean.harmonics[0].astype(float), azimuth, wind, np.zeros(1))
     air.blade_sums(parts, state, pitch, wind, wake, sums)
@@ -418,19 +416,7 @@ def _account(books: Floats) -> EnergyAccount:
     return EnergyAccount(books[:, :count], books[:, count:] - books[0, count:])
 
 
-def _field(turbine: Turbine, wind_speed: float, duration: float, rate: float) -> DiscTurbulence:
-    if not (np.isfinite(duration * rate) and rate > 0.0 and duration * rate >= MIN_SAMPLES):
-        raise InputError(
-            f"turbine: {duration} s at {rate} Hz is no history; give a positive duration and rate "
-            f"with at least {MIN_SAMPLES} samples"
-        )
-    rotor = turbine.rotor
-    scales = length_scales(rotor.hub_height)
-    radius = rotor.element_radius()[0]
-    return disc_turbulence(radius, rotor.harmonics, wind_speed, *scales, duration + SETTLING, rate)
-
-
-def _turbine_history(
+def simulated_condition(
     condition: Condition,
     turbine: Turbine,
     controller: Controller,
@@ -440,8 +426,22 @@ def _turbine_history(
     highest: int | None = None,
     *,
     accounted: bool = False,
-) -> tuple[TurbineHistory, Floats]:
-    """A history, and the compiled account, if it is kept."""
+) -> tuple[TurbineHistory, Floats, Floats]:
+    """A history, what is beside its loads, and the compiled account, if it is kept.
+
+    Parameters
+    ----------
+    condition, turbine, controller, physics : Condition, Turbine, Controller, Physics
+        The wind, the turbine.
+    field : DiscTurbulence
+        Turbulence at the wind's mean speed, see `turbulence_of`.
+    longest_step : float
+        Longest step of the integration [s].
+    highest : int or None
+        Harmonics of azimuth in the wind; all if not given.
+    accounted : bool
+        Whether the account of the energy is kept.
+    """
     generator = condition.generator()
     azimuth = generator.uniform(0.0, 2.0 * np.pi)
     sigma = turbulence_sigma(condition.wind_speed, condition.turbulence)
@@ -454,10 +454,10 @@ def _turbine_history(
     loads, beside, books = _run(
         turbine, controller, inflow, physics, azimuth, False, None, longest_step, accounted
     )
-    after = round(SETTLING * field.rate)
-    pitch, torque, power, wind, psi, speed = beside[after:, :6].T
-    arrays = dict(zip(_KEPT, (loads[after:], psi, speed, pitch, torque, power, wind), strict=True))
-    return _history(condition, arrays, field.rate), books
+    loads, beside = (of[round(SETTLING * field.rate) :] for of in (loads, beside))
+    pitch, torque, power, wind, psi, speed = beside[:, :6].T
+    arrays = dict(zip(_KEPT, (loads, psi, speed, pitch, torque, power, wind), strict=True))
+    return _history(condition, arrays, field.rate), beside, books
 
 
 def _history(condition: Condition, arrays: dict[str, Floats], rate: float) -> TurbineHistory:

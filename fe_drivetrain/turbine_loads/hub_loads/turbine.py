@@ -199,8 +199,8 @@ class BladeModes:
         Integrals of m times two shapes, by both modes and both components [kg].
     stiffening : ndarray, (2, 2)
         Integrals of the tension under unit speed of rotation times slopes of two modes [kg].
-    first_moment : float
-        Integral of m r [kg m].
+    first_moment, second_moment : float
+        Integrals of m r [kg m] and m r^2 [kg m^2].
     """
 
     place: Floats
@@ -210,6 +210,7 @@ class BladeModes:
     products: Floats
     stiffening: Floats
     first_moment: float
+    second_moment: float
 
     @property
     def mass(self) -> Floats:
@@ -252,6 +253,7 @@ def blade_modes(turbine: Turbine, count: int = 400) -> BladeModes:
         np.einsum("acx,bdx,x->abcd", shape, shape, mass),
         np.einsum("acx,bcx,x->ab", slope, slope, tension) * step / length,
         float(mass @ radius),
+        float(mass @ radius**2),
     )
 
 

@@ -67,6 +67,8 @@ PSI, SPEED, TWIST, GENERATOR, FORE, FORE_RATE, SIDE, SIDE_RATE = range(8)
 MODES, RATES = 8, 11
 """Of blade i in mode a, at + 6 a + i."""
 STATES = 20
+SUMS = 8
+"""Sums of the air over a blade, see `blade_sums`."""
 
 
 @njit(cache=True)
@@ -127,9 +129,9 @@ def blade_sums(
 ) -> None:
     """Forces of the air on each blade.
 
-    Sums over a blade (3, 6): force and moment out of the plane of rotation, force and torque in
-    it, force on each mode; then means over blades by element (2, r) behind them: force out of
-    and in the plane per length.
+    Sums over a blade (3, 8): force and moment out of the plane of rotation, force and torque in
+    it, force on each mode, torsion at the root for each unit of a mode; then means over blades by
+    element (2, r) behind them: force out of and in the plane per length.
     """
     for j in range(sums.shape[0]):
         for i in range(sums.shape[1]):
@@ -164,6 +166,7 @@ def blade_sums(
                 across = parts.shape[a, 0, i] * c - parts.shape[a, 1, i] * s
                 beside = parts.shape[a, 0, i] * s + parts.shape[a, 1, i] * c
                 sums[blade, 4 + a] += w * (out * across + drive * beside)
+                sums[blade, 6 + a] += w * (out * beside - drive * across)
             sums[3, i] += out / 3.0
             sums[4, i] += drive / 3.0
 

@@ -25,6 +25,7 @@ from fe_drivetrain.turbine_loads.hub_loads.turbine_air import (
     SIDE_RATE,
     SPEED,
     STATES,
+    SUMS,
     TWIST,
     Parts,
     blade_sums,
@@ -282,9 +283,9 @@ def run_turbine(
     -------
     ndarray, (n, 6)
         Loads at the hub [N, N m]; fewer rows where the rotor stopped or ran away.
-    ndarray, (n, 4 + 20)
+    ndarray, (n, 4 + 20 + 20 + 24)
         Pitch [rad], torque of the generator [N m], power of the air [W], mean wind over the disc
-        [m/s], the state.
+        [m/s], the state, its rates, and what `blade_sums` gives of each blade.
     ndarray, (n, 8 + 7)
         What `stored` gives [J], and since the beginning the integrals of `powers` [J]; no rows
         without an account.
@@ -293,10 +294,10 @@ def run_turbine(
     step = sample / steps
     state, at = first.copy(), np.zeros(STATES)
     made = np.zeros((count, 6))
-    beside = np.zeros((count, 4 + STATES))
+    beside = np.zeros((count, 4 + 2 * STATES + 3 * SUMS))
     now, wind = np.zeros((rows, rings)), np.zeros((3, rings))
     waves = np.zeros(rows)
-    sums = np.zeros((5, max(rings, 6)))
+    sums = np.zeros((5, max(rings, SUMS)))
     loads, rate = np.zeros(6), np.zeros((4, STATES))
     free = np.zeros(rings)
     books = np.zeros((count if accounted else 0, ENERGIES + WORKS))
@@ -360,6 +361,10 @@ def run_turbine(
                         beside[n, 3] += free[i] * parts.weight[i] * parts.radius[i] / area
                     for j in range(STATES):
                         beside[n, 4 + j] = state[j]
+                        beside[n, 4 + STATES + j] = rate[0, j]
+                    for i in range(3):
+                        for j in range(SUMS):
+                            beside[n, 4 + 2 * STATES + SUMS * i + j] = sums[i, j]
                     if accounted:
                         for j in range(ENERGIES):
                             books[n, j] = pitched[j]

@@ -17,8 +17,18 @@ from fe_drivetrain.turbine_loads.hub_loads.controller import (
     SLIP,
     Controller,
 )
+from fe_drivetrain.turbine_loads.hub_loads.histories import MIN_SAMPLES
 from fe_drivetrain.turbine_loads.hub_loads.turbine import Physics, Turbine, blade_modes
-from fe_drivetrain.turbine_loads.hub_loads.wind import Singles, power_law
+from fe_drivetrain.turbine_loads.hub_loads.wind import (
+    DiscTurbulence,
+    Singles,
+    disc_turbulence,
+    length_scales,
+    power_law,
+)
+
+SETTLING = 60.0
+"""Left out at the beginning [s]: 20 lengths of the speed's answer, 15 of the slowest wake."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +97,34 @@ def even_inflow(
     rings = turbine.rotor.elements
     harmonics = np.repeat(added[:, None, None], rings, axis=2)
     return Inflow(speed, shear, harmonics, rate)
+
+
+def turbulence_of(
+    turbine: Turbine, wind_speed: float, duration: float, rate: float
+) -> DiscTurbulence:
+    """Turbulence on the rings of a rotor, with `SETTLING` before what is kept.
+
+    Parameters
+    ----------
+    turbine : Turbine
+        The turbine.
+    wind_speed, duration, rate : float
+        Mean wind [m/s], length [s], samples per second [Hz].
+
+    Raises
+    ------
+    InputError
+        Duration or rate leave too few samples.
+    """
+    if not (np.isfinite(duration * rate) and rate > 0.0 and duration * rate >= MIN_SAMPLES):
+        raise InputError(
+            f"turbine: {duration} s at {rate} Hz is no history; give a positive duration and rate "
+            f"with at least {MIN_SAMPLES} samples"
+        )
+    rotor = turbine.rotor
+    scales = length_scales(rotor.hub_height)
+    radius = rotor.element_radius()[0]
+    return disc_turbulence(radius, rotor.harmonics, wind_speed, *scales, duration + SETTLING, rate)
 
 
 def mean_shear(turbine: Turbine, inflow: Inflow) -> Floats:
