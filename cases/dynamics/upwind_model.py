@@ -1,0 +1,472 @@
+"""The first stage with all that is guessed about it: loads of the planets' bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
+from math import cos, pi, radians, sin
+
+import numpy as np
+
+from fe_drivetrain.bearing import Bearing, equilibrium, forces
+from fe_drivetrain.common import Floats
+from fe_drivetrain.common.components import GRAVITY
+from fe_drivetrain.common.spatial import point_motions
+from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.dynamics import (
+    FaceTwist,
+    Flexible,
+    Level,
+    Machine,
+    OnRollers,
+    Rim,
+    Static,
+    System,
+    assemble,
+    assembly,
+    planet_seats,
+    planetary_set,
+    static,
+    static_on_rollers,
+    with_twist,
+)
+from fe_drivetrain.dynamics.bodies.flexible import Housing
+from fe_drivetrain.elasticity.solve.condensation import Condensed
+
+STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0)
+RIM_WALL = 0.06
+"""Wall of a ring outside of its teeth, over the diameter of these."""
+RIM_HARMONICS = tuple(range(2, 8))
+STIFF = 1e-5
+"""Compliance of a carrier that counts as rigid, over that of its body."""
+
+
+@dataclass(frozen=True)
+class Guess:
+    """What a model takes where nothing is published; all left out is rigid, exact and tight.
+
+    Attributes
+    ----------
+    carrier : float
+        Compliance of the carrier over that of its body.
+    sun_twist, ring_twist : float
+        Compliance in torsion along the face, over that of the sun's solid root circle and of the
+        ring's wall.
+    rim : float
+        Compliance of the ring's rim in its plane, over that of a wall of `RIM_WALL`.
+    spline : float
+        1 where the sun is free sideways and in tilt behind a spline, 0 where its shaft holds it.
+    bushing, overhung : float
+        Compliance in tilt of a pin's bushing at its middle, or at the upwind cheek [rad/(N m)].
+    mount : float
+        Compliance of the gearbox's mount over that of the file.
+    clearance, clearance_difference : float
+        Diametral clearance of the planets' bearings: mean, and downwind less upwind [m].
+    pin_tilt, pin_place : float
+        Tilt of all pins, the upwind end ahead [rad]; place of the first pin, ahead [m].
+    sun_lead, ring_lead : float
+        Gap of the meshes at the downwind end of the face less that at the upwind end [m].
+    shift, spacing : float
+        x of the bearings' middle from that of the faces, and their distance over the file's.
+    pitch, yaw : float
+        Moments about y and z on the rotor [N m].
+    slope : float
+        Slope of the main shaft, its rear end low [rad].
+    meshes, bearings : float
+        Stiffness of meshes and of the planets' bearings, over the model's.
+    """
+
+    carrier: float = 0.0
+    sun_twist: float = 0.0
+    ring_twist: float = 0.0
+    rim: float = 0.0
+    spline: float = 0.0
+    bushing: float = 0.0
+    overhung: float = 0.0
+    mount: float = 0.0
+    clearance: float = 0.0
+    clearance_difference: float = 0.0
+    pin_tilt: float = 0.0
+    pin_place: float = 0.0
+    sun_lead: float = 0.0
+    ring_lead: float = 0.0
+    shift: float = 0.0
+    spacing: float = 1.0
+    pitch: float = 0.0
+    yaw: float = 0.0
+    slope: float = 0.0
+    meshes: float = 1.0
+    bearings: float = 1.0
+
+    def but(self, name: str, value: float) -> Guess:
+        """The guess with another value."""
+        return replace(self, **{name: value})
+
+
+RIGID = Guess()
+NAMES = tuple(one.name for one in fields(Guess))
+
+
+@dataclass(frozen=True)
+class Turned:
+    """Loads of the planets' bearings and what goes with them, over azimuths.
+
+    Attributes
+    ----------
+    azimuths : ndarray, (a,)
+        Of the first planet, from y to z [rad].
+    loads : ndarray, (a, planets, 2)
+        Radial loads of the upwind and the downwind bearing [N].
+    tilts : ndarray, (a, planets)
+        Turn of a planet about its radius [rad].
+    ring : ndarray, (a, planets, slices)
+        Forces of the slices of the ring's meshes, from upwind [N].
+    """
+
+    azimuths: Floats
+    loads: Floats
+    tilts: Floats
+    ring: Floats
+
+    @property
+    def ratio(self) -> float:
+        """Upwind over downwind, of means over planets and azimuths."""
+        up, down = self.loads.mean(axis=(0, 1))
+        return float(up / down)
+
+    @property
+    def ratios(self) -> Floats:
+        """(planets,) upwind over downwind, of means over azimuths."""
+        up, down = self.loads.mean(axis=0).T
+        return np.asarray(up / down)
+
+    @property
+    def sharing(self) -> Floats:
+        """(a, planets) load of both bearings of a planet, over the mean of planets."""
+        each = self.loads.sum(axis=2)
+        return np.asarray(each / each.mean(axis=1, keepdims=True))
+
+
+@dataclass(frozen=True)
+class FirstStage:
+    """The first stage of a machine under the torque of its rotor.
+
+    Attributes
+    ----------
+    machine : MachineTable
+        A machine's rows, with planets on linear bearings.
+    torque : float
+        On the rotor [N m].
+    body : Condensed
+        Carrier, free, at hub and pins.
+    mount : Flexible
+        The housing on its mount; empty where the file gives none.
+    rollers : Bearing or None
+        Rollers of a planet's bearing.
+    cheek : float
+        x of the upwind cheek's middle from that of the pins [m].
+    slices : int
+        Of the meshes of the first stage.
+    """
+
+    machine: MachineTable
+    torque: float
+    body: Condensed
+    mount: Flexible
+    rollers: Bearing | None
+    cheek: float
+    slices: int = 15
+    _kept: dict[tuple[Guess, float], tuple[System, Floats]] = field(
+        default_factory=dict, compare=False, repr=False
+    )
+
+    @property
+    def stage(self) -> PlanetaryData:
+        """Its data."""
+        found = self.machine.stages[0]
+        assert isinstance(found, PlanetaryData)
+        return found
+
+    @cached_property
+    def pins(self) -> tuple[str, str]:
+        """Names of the upwind and the downwind bearing of each pin."""
+        by_place = sorted(self.stage.pins, key=lambda pin: pin.offset)
+        return by_place[0].name, by_place[-1].name
+
+    @property
+    def spacing(self) -> float:
+        """Distance of a pin's outer bearings [m]."""
+        offsets = [pin.offset for pin in self.stage.pins]
+        return max(offsets) - min(offsets)
+
+    def few(self) -> Floats:
+        """(2,) azimuths whose planets stand at equal steps of a turn."""
+        return np.array([0.0, pi / self.stage.planets])
+
+    def turned(self, guess: Guess, azimuths: Floats | None = None) -> Turned:
+        """Equilibria at azimuths of the carrier, on linear bearings."""
+        at = self.few() if azimuths is None else azimuths
+        found = [self._solved(guess, float(azimuth)) for azimuth in at]
+        return self.collected(at, found)
+
+    def ratio(self, guess: Guess) -> float:
+        """Upwind over downwind, of means over a turn."""
+        return self.turned(guess).ratio
+
+    def on_rollers(self, guess: Guess, azimuths: Floats | None = None) -> Turned:
+        """Equilibria with the planets' bearings on rollers with clearance."""
+        assert self.rollers is not None
+        at = self.few() if azimuths is None else azimuths
+        tight = replace(guess, clearance=0.0, clearance_difference=0.0)
+        found: list[Static | OnRollers] = []
+        for azimuth in (float(a) for a in at):
+            machine, gives = self._changed(tight), self._flexible(guess)
+            system, load = self._system(tight, azimuth)
+            seats = []
+            for pin, side in zip(self.pins, (-0.5, 0.5), strict=True):
+                play = guess.clearance + side * guess.clearance_difference
+                bearing = self.rollers.with_rows(clearance=play / 2)
+                own = planet_seats(machine, 1, bearing, azimuth, gives)
+                seats += [one for one in own if one.name.endswith(f" {pin}")]
+            found.append(static_on_rollers(system, load, seats, self._gaps(tight)))
+        return self.collected(at, found)
+
+    def collected(self, azimuths: Floats, found: Sequence[Static | OnRollers]) -> Turned:
+        """Loads of bearings, tilts and slices of equilibria."""
+        planets = range(1, self.stage.planets + 1)
+        loads, tilts, ring = [], [], []
+        for azimuth, one in zip(azimuths, found, strict=True):
+            state = one.static if isinstance(one, OnRollers) else one
+            loads.append([[one.radial(f"stage 1 pin {k} {p}") for p in self.pins] for k in planets])
+            angles = planetary_set(self.machine, 1, turned=float(azimuth)).angles
+            moved = [state.system.motion_of(f"stage 1 planet {k}", state.q) for k in planets]
+            tilts.append(
+                [m[4] * cos(a) + m[5] * sin(a) for m, a in zip(moved, angles, strict=True)]
+            )
+            ring.append(
+                [
+                    [state.force(f"stage 1 ring-planet {k} slice {i + 1}") for i in range(n)]
+                    for k in planets
+                    for n in (self.slices,)
+                ]
+            )
+        return Turned(azimuths, np.array(loads), np.array(tilts), np.array(ring))
+
+    def responses(self, guess: Guess, azimuth: float) -> Floats:
+        """(planets, 2, 2, 4) radial and tangential force to gravity, torque, pitch and yaw.
+
+        Parameters
+        ----------
+        guess : Guess
+            Its moments do not count.
+        azimuth : float
+            Azimuth of the carrier [rad].
+        """
+        system, _ = self._system(guess, azimuth)
+        loads = [self._weight(guess, system)]
+        loads += [system.load_on("rotor", np.eye(6)[k]) for k in (3, 4, 5)]
+        out = np.zeros((self.stage.planets, 2, 2, len(loads)))
+        for j, load in enumerate(loads):
+            found = static(system, load)
+            for k in range(self.stage.planets):
+                for i, pin in enumerate(self.pins):
+                    name = f"stage 1 pin {k + 1} {pin}"
+                    out[k, i, :, j] = [found.force(f"{name} {u}") for u in ("uy", "uz")]
+        return out
+
+    def _solved(self, guess: Guess, azimuth: float) -> Static:
+        system, load = self._system(guess, azimuth)
+        return static(system, load, self._gaps(guess))
+
+    def _system(self, guess: Guess, azimuth: float) -> tuple[System, Floats]:
+        """The system and its load; of guesses that differ by gaps alone, the same one."""
+        shape = replace(
+            guess, **dict.fromkeys((*GAPS, "clearance", "clearance_difference"), 0.0)
+        )
+        key = (shape, azimuth)
+        if key not in self._kept:
+            if len(self._kept) > 40:
+                self._kept.clear()
+            self._kept[key] = self._built(shape, azimuth)
+        return self._kept[key]
+
+    def _built(self, guess: Guess, azimuth: float) -> tuple[System, Floats]:
+        machine = self._changed(guess)
+        parts = assembly(
+            machine, Level.FLEXIBLE, azimuth, 2, True, flexible=self._flexible(guess)
+        )
+        bodies, springs = parts.bodies, parts.springs
+        if guess.spline:
+            springs = [s for s in springs if not _holds_sun(machine, s.name)]
+        for twist in self._twists(guess):
+            more, springs = with_twist(springs, twist)
+            bodies = [*bodies, *more]
+        system = assemble(bodies, springs, parts.superelements)
+        hub = np.array([0.0, 0.0, 0.0, self.torque, guess.pitch, guess.yaw])
+        return system, system.load_on("rotor", hub) + self._weight(guess, system)
+
+    def _weight(self, guess: Guess, system: System) -> Floats:
+        down = np.array([sin(guess.slope), 0.0, -cos(guess.slope)])
+        return system.gravity(GRAVITY * down)
+
+    def _changed(self, guess: Guess) -> MachineTable:
+        """The machine with the places and stiffnesses of a guess."""
+        pins = tuple(
+            pin.model_copy(
+                update={
+                    "offset": guess.spacing * pin.offset + guess.shift,
+                    "stiffness": tuple(guess.bearings * np.asarray(pin.stiffness)),
+                }
+            )
+            for pin in self.stage.pins
+        )
+        first = self.stage.model_copy(
+            update={
+                "pins": pins,
+                "slices": self.slices,
+                "sun_planet": guess.meshes * self.stage.sun_planet,
+                "ring_planet": guess.meshes * self.stage.ring_planet,
+            }
+        )
+        return self.machine.model_copy(update={"stages": (first, *self.machine.stages[1:])})
+
+    def _flexible(self, guess: Guess) -> Flexible:
+        gives = Flexible()
+        if guess.mount and isinstance(self.mount.housing, Housing):
+            housing = self.mount.housing
+            soft = replace(housing, stiffness=housing.stiffness / guess.mount)
+            gives = replace(self.mount, housing=soft)
+        if guess.carrier or guess.bushing or guess.overhung:
+            seat = guess.bushing * tilting(0.0) + guess.overhung * tilting(self.cheek)
+            own = on_bushings(self.body, max(guess.carrier, STIFF), seat)
+            gives = replace(gives, carriers={1: own})
+        if guess.rim:
+            radius = self.ring_radius
+            wall = RIM_WALL * 2 * radius * guess.rim ** (-1 / 3)
+            rim = Rim(radius + wall / 2, wall, self.stage.face_width, STEEL)
+            gives = replace(gives, rims={1: (rim, RIM_HARMONICS)})
+        return gives
+
+    def _twists(self, guess: Guess) -> list[FaceTwist]:
+        width, found = self.stage.face_width, []
+        if guess.sun_twist:
+            rigidity = STEEL.shear_modulus * pi / 32 * self.sun_root**4 / guess.sun_twist
+            found.append(FaceTwist("stage 1 sun", rigidity, width, 1))
+        if guess.ring_twist:
+            inner = 2 * self.ring_radius
+            outer = inner * (1 + 2 * RIM_WALL)
+            rigidity = STEEL.shear_modulus * pi / 32 * (outer**4 - inner**4) / guess.ring_twist
+            found.append(FaceTwist("stage 1 ring", rigidity, width, -1))
+        return found
+
+    @property
+    def sun_root(self) -> float:
+        """Diameter of the sun's root circle, as if of 2.5 modules of teeth without a shift [m]."""
+        stage = self.stage
+        teeth = stage.teeth[-1] if stage.teeth else 21
+        return 2 * stage.sun_radius * (1 - 2.5 / teeth)
+
+    @property
+    def ring_radius(self) -> float:
+        """Working pitch radius of the ring [m]."""
+        return self.stage.centre_distance + (self.stage.centre_distance - self.stage.sun_radius)
+
+    def _gaps(self, guess: Guess) -> dict[str, float]:
+        """Gaps of bearings and slices; the load presses a pin's bearings backwards."""
+        gaps: dict[str, float] = {}
+        ahead = guess.pin_tilt * guess.spacing * self.spacing / 2 + guess.clearance_difference / 4
+        up, down = self.pins
+        for k in range(1, self.stage.planets + 1):
+            place = guess.pin_place if k == 1 else 0.0
+            gaps[f"stage 1 pin {k} {up} uz"] = place + ahead
+            gaps[f"stage 1 pin {k} {down} uz"] = place - ahead
+            for mesh, lead in (("sun", guess.sun_lead), ("ring", guess.ring_lead)):
+                for i in range(self.slices):
+                    at = (i + 0.5) / self.slices - 0.5
+                    gaps[f"stage 1 {mesh}-planet {k} slice {i + 1}"] = at * lead
+        return {name: gap for name, gap in gaps.items() if gap}
+
+
+GAPS = ("pin_tilt", "pin_place", "sun_lead", "ring_lead")
+
+
+def _holds_sun(machine: MachineTable, spring: str) -> bool:
+    """Whether a spring is one of the sun's shaft, across it or in tilt."""
+    first = (machine.shafts[1].name, f"{machine.shafts[1].name} element 1")
+    return spring in [f"{name} {motion}" for name in first for motion in ("uy", "uz", "ry", "rz")]
+
+
+def tilting(x: float) -> Floats:
+    """(6, 6) compliance of a pin at its middle, for one unit of tilt at a place along it [m]."""
+    found = np.zeros((6, 6))
+    # a force across at the middle has the arm x about the place that tilts
+    for move, tilt, sign in ((1, 5, 1.0), (2, 4, -1.0)):
+        arm = np.zeros(6)
+        arm[[move, tilt]] = -sign * x, 1.0
+        found += np.outer(arm, arm)
+    return found
+
+
+def on_bushings(body: Condensed, factor: float, seat: Floats) -> Condensed:
+    """A carrier that gives by a factor, with its pins on bushings.
+
+    Parameters
+    ----------
+    body : Condensed
+        Free, at its hub, first, and its pins.
+    factor : float
+        On its compliance.
+    seat : ndarray, (6, 6)
+        Compliance of each pin's bushing, at the pin's middle.
+    """
+    order = [body.names.index("hub"), *(k for k, name in enumerate(body.names) if name != "hub")]
+    rows = np.concatenate([6 * k + np.arange(6) for k in order])
+    K = body.stiffness[np.ix_(rows, rows)]
+    places = body.positions[order]
+    give = factor * np.linalg.inv(K[6:, 6:]) + np.kron(np.eye(len(order) - 1), seat)
+    held = np.linalg.inv(give)
+    rigid = point_motions(places[1:], places[0])
+    apart = np.hstack([-rigid, np.eye(len(rigid))])
+    stiffness = apart.T @ held @ apart
+    names = tuple(body.names[k] for k in order)
+    return Condensed(names, places, (stiffness + stiffness.T) / 2, np.zeros((len(rows), 3)))
+
+
+def linearised(machine: Machine, rollers: Bearing, torque: float) -> MachineTable:
+    """A machine's rows, planets' bearings as stiff as tight rollers at the mean load.
+
+    Parameters
+    ----------
+    machine : Machine
+        With a planetary first stage.
+    rollers : Bearing
+        Of each bearing.
+    torque : float
+        On the rotor [N m].
+    """
+    stage = machine.stages[0]
+    assert isinstance(stage, PlanetaryData)
+    a, count = stage.centre_distance, len(stage.pins)
+    tangential = torque / a / stage.planets / count
+    offsets = [pin.offset for pin in stage.pins]
+    helix = abs(np.tan(radians(stage.helix)))
+    couple = 2 * torque / a / stage.planets / 2 * helix * (a - stage.sun_radius)
+    load = float(np.hypot(tangential, couple / (max(offsets) - min(offsets))))
+    tight = rollers.with_rows(clearance=0.0)
+    K = forces(tight, equilibrium(tight, [0, 0, load, 0, 0]).displacements)[1][0]
+    pins = tuple(
+        pin.model_copy(
+            update={
+                "stiffness": (
+                    np.ravel(pin.stiffness)[0], K[2, 2], K[2, 2], 0.0, K[3, 3], K[3, 3]
+                )
+            }
+        )
+        for pin in stage.pins
+    )
+    first = stage.model_copy(update={"pins": pins})
+    rows = MachineTable.model_validate(dict(machine))
+    return rows.model_copy(update={"stages": (first, *machine.stages[1:])})
