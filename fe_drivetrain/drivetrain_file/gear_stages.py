@@ -256,6 +256,11 @@ class PlanetaryStage(GearStage):
     sun_planet_damping: float = stage_fields.mesh_damping()
     ring_planet_damping: float = stage_fields.mesh_damping()
     pins: tuple[PinData, ...] = Field(default=(), description="bearings of each planet")
+    bushing: Six | None = Field(
+        default=None,
+        description="stiffness of each pin's seat in the carrier: axial, radial, tangential, and "
+        "about them, N/m, N m/rad; rigid where left out",
+    )
 
     _bodies = field_validator("carrier", "planet", "sun", "ring", mode="wrap")(in_its_field)
     _pins = field_validator("pins", mode="before")(rows_of("pin", PinData))

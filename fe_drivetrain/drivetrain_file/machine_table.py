@@ -104,6 +104,8 @@ class MachineTable(Part):
         """Assumptions of all rows: what the table does not give."""
         named: list[tuple[str, Part]] = [("rotor", self.rotor)]
         named += [(f"shaft {shaft.name}", shaft) for shaft in self.shafts]
+        splines = [(f"shaft {shaft.name} spline", shaft.spline) for shaft in self.shafts]
+        named += [(name, spline) for name, spline in splines if spline is not None]
         for number, stage in enumerate(self.stages, start=1):
             named.append((f"stage {number}", stage))
             parts = ("carrier", "planet", "sun", "ring", "gear", "pinion")

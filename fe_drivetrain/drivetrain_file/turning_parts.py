@@ -8,8 +8,16 @@ from pydantic import AfterValidator, Field, field_validator, model_validator
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import min_eigenvalue, symmetry_error
+from fe_drivetrain.drivetrain_file.couplings import SplineData
 from fe_drivetrain.drivetrain_file.materials import Material
-from fe_drivetrain.geometry.part import MINIMUM, Assumption, Part, dimension, rows_of
+from fe_drivetrain.geometry.part import (
+    MINIMUM,
+    Assumption,
+    Part,
+    dimension,
+    in_its_field,
+    rows_of,
+)
 from fe_drivetrain.geometry.shaft import Section
 
 STEEL = Material(youngs_modulus=2.06e11, poisson_ratio=0.3, density=7850.0)
@@ -194,12 +202,17 @@ class ShaftRow(Part):
         default="shaft",
         description="coupling: carries torque alone; rigid: makes its two ends one body",
     )
+    spline: SplineData | None = Field(
+        default=None, description="spline between two parts of the shaft, as behind a sun"
+    )
 
     _sections = field_validator("sections", mode="before")(rows_of("section", Section))
+    _spline = field_validator("spline", mode="wrap")(in_its_field)
 
     @model_validator(mode="after")
     def _one_size(self) -> Self:
         name = f"shaft {self.name!r}"
+        self._check_spline(name)
         if self.kind == "rigid":
             sized = (self.outer, self.torsion, self.bending, self.sections)
             if any(value is not None for value in sized) or self.inner:
@@ -228,6 +241,21 @@ class ShaftRow(Part):
             )
         self._check_sections(name)
         return self
+
+    def _check_spline(self, name: str) -> None:
+        if self.spline is None:
+            return
+        if self.kind == "coupling":
+            raise InputError(
+                f"{name} is a coupling, which carries torque alone, and has a spline: remove it, "
+                "or kind: coupling"
+            )
+        length = self.own_length
+        if length is not None and self.spline.at > length:
+            raise InputError(
+                f"{name} has its spline at {self.spline.at:g} m but is {length:g} m long: lower "
+                "spline.at"
+            )
 
     def _check_sections(self, name: str) -> None:
         if self.sections is None:

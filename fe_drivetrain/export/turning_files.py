@@ -67,9 +67,9 @@ TURNING_FORMATS: dict[str, TurningFormat] = {
         ".rexs",
         "REXS 1.6, gearbox programs: shafts, gears, stages, bearings",
         "rexs_gearbox",
-        left_out="inertias, dampers, mesh stiffness, couplings between motions of a bearing, how "
-        "far both directions of a bearing differ, and of a shaft that is given by its torsional "
-        "stiffness all but its place",
+        left_out="inertias, dampers, mesh stiffness, splines of shafts, bushings of pins, "
+        "couplings between motions of a bearing, how far both directions of a bearing differ, and "
+        "of a shaft that is given by its torsional stiffness all but its place",
     ),
     ELASTODYN: TurningFormat(
         ".dat",

@@ -26,6 +26,8 @@ from fe_drivetrain.dynamics.bodies.machine_shafts import (
     shaft_slices,
     shaft_springs,
     shaft_stations,
+    spline_springs,
+    station_names,
 )
 from fe_drivetrain.dynamics.bodies.springs import Place, Spring, bushing
 
@@ -215,23 +217,29 @@ def _line(
     bends = level is Level.FLEXIBLE
     # a beam is exact in one piece, and what has no mass needs no more; hinges are one an element
     count = ELEMENTS if shaft.has_mass or shaft.bending is not None else 1
-    stations = shaft_stations(machine, k, count) if bends else [0.0, shaft.length]
+    stations = shaft_stations(machine, k, count if bends else 0)
     of_name = {body.name: body for body in built.bodies}
     before = _between(k, ends[0], built)
-    inner = [
-        Body(f"{shaft.name} node {i}", (begin[0] + x, *begin[1:]), speed=machine.speeds[k])
-        for i, x in enumerate(stations[1:-1], start=1)
-    ]
-    bodies = [of_name[ends[0]], *inner, of_name[ends[1]]]
+    bodies, places = [], []
+    for x, *names in zip(stations, *station_names(shaft, ends, stations), strict=True):
+        for name in dict.fromkeys(names):
+            inner = Body(name, (begin[0] + x, *begin[1:]), speed=machine.speeds[k])
+            bodies.append(of_name.get(name, inner))
+            places.append(x)
     pieces: list[Beam | Link] = []
-    for i, span in enumerate(pairwise(stations)):
+    for i, span in enumerate(pairwise(places)):
+        if span[0] == span[1] or (shaft.kind == "rigid" and shaft.spline is not None):
+            springs = spline_springs(machine, k, bodies[i + 1], bodies[i])
+            K = _of_springs(springs, (bodies[i].name, bodies[i + 1].name))
+            pieces.append(Link(span[1] - span[0] or STUB, _that_moves(K, level)))
+            continue
         if bends and shaft.kind == "shaft" and shaft.bending is None:
             pieces.append(_beam(shaft, span))
             continue
         pieces.append(_link(shaft, bodies[i], bodies[i + 1], begin, stiffest, level))
         if shaft.has_mass:
             bodies[i], bodies[i + 1] = (heavier(bodies[j], shaft, span) for j in (i, i + 1))
-    supports = [] if level is Level.TORSIONAL else _bearings(machine, shaft, stations, bodies)
+    supports = [] if level is Level.TORSIONAL else _bearings(machine, shaft, places, bodies)
     bodies = [*before, *bodies]
     pieces = [*(Link(STUB, np.zeros((12, 12))) for _ in before), *pieces]
     supports = [replace(one, node=one.node + len(before)) for one in supports]

@@ -105,6 +105,9 @@ from .slices import Modifications as Modifications
 from .slices import SlicedMesh as SlicedMesh
 from .slices import contact_rows as contact_rows
 from .slices import contacts as contacts
+from .splines import LoadedSpline as LoadedSpline
+from .splines import Spline as Spline
+from .splines import loaded_spline as loaded_spline
 from .strength import GearMaterial as GearMaterial
 from .strength import LifeCurve as LifeCurve
 from .strength import equivalent_roughness as equivalent_roughness

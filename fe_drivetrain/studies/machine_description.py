@@ -149,6 +149,17 @@ def turning_tables(turning: Turning) -> dict[str, list[Record]]:
         if isinstance(stage, PlanetaryData)
         for pin in stage.pins
     ]
+    pins += [
+        {
+            "bearing": f"stage {number} bushings",
+            "holds": f"stage {number} pins",
+            "at [m]": 0.0,
+            "stiffness": _springs(stage.bushing),
+            "catalogue": None,
+        }
+        for number, stage in enumerate(machine.stages, start=1)
+        if isinstance(stage, PlanetaryData) and stage.bushing is not None
+    ]
     bearings: list[Record] = [
         {
             "bearing": bearing.name,
@@ -213,9 +224,16 @@ def _shaft_row(shaft: ShaftData, speed: float) -> Record:
         "shaft": shaft.name,
         "kind": shaft.kind,
         "length [m]": shaft.length,
-        "size": size,
+        "size": size + _spline(shaft),
         "speed over the rotor's": speed,
     }
+
+
+def _spline(shaft: ShaftData) -> str:
+    """The spline that a shaft begins with, in words."""
+    if shaft.spline is None:
+        return ""
+    return f", on a spline of {shaft.spline.teeth} teeth, {shaft.spline.diameter:g} m wide"
 
 
 def _springs(stiffness: SixOrMatrix) -> str:

@@ -157,6 +157,9 @@ def _of_body(name: str, shafts: set[str]) -> str:
         return _shaft(shaft)
     if name == "housing":
         return _HOUSING
+    part = re.sub(r" (before|behind) spline$", "", name)
+    if part in shafts:
+        return _shaft(part)
     return re.sub(r"^(stage \d+ planet) \d+$", r"\1s", name)
 
 
@@ -169,6 +172,9 @@ def _of_spring(name: str, shafts: set[str], bearings: set[str]) -> str:
     name = re.sub(r" (slice|element) \d+$", "", name)
     if name in shafts:
         return _shaft(name)
+    if name.removesuffix(" spline") in shafts:
+        return f"spline of {_shaft(name.removesuffix(' spline'))}"
+    name = re.sub(r"^(stage \d+) bushing \d+$", r"\1 pin bushings", name)
     name = re.sub(r"^(stage \d+) (sun|ring)-planet \d+$", r"\1 \2 meshes", name)
     return re.sub(r"^(stage \d+) pin \d+( .*)?$", r"\1 planet bearings", name)
 

@@ -20,7 +20,7 @@ from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.dynamics.bodies.bodies import Body, Superelement
 from fe_drivetrain.dynamics.bodies.elastic_ring import Rim
-from fe_drivetrain.dynamics.bodies.planetary import PlanetarySet
+from fe_drivetrain.dynamics.bodies.planetary import PlanetarySet, pin_place
 from fe_drivetrain.dynamics.bodies.springs import Place, Spring, bushing
 from fe_drivetrain.elasticity.solve.condensation import Condensed
 
@@ -168,9 +168,7 @@ def carrier_element(
     arm = np.eye(6 * len(own))
     arm[:6, :6] = wrench_transport(places[0] - centres[0])
     K = arm @ K @ arm.T
-    pins = tuple(
-        Place(f"{stage.name} pin body {k + 1}", stage.centre(k)) for k in range(len(stage.angles))
-    )
+    pins = tuple(pin_place(stage, k, flexible=True, bushed=False) for k in range(len(stage.angles)))
     bodies = [Body(pin.body, pin.centre) for pin in pins]
     joined = (carrier, *(pin.body for pin in pins))
     return bodies, Superelement(f"{stage.name} carrier", joined, (K + K.T) / 2), pins

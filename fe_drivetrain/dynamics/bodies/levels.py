@@ -31,6 +31,7 @@ from fe_drivetrain.dynamics.bodies.planetary import (
     PlanetarySet,
     bodies_of,
     equal_angles,
+    in_bushings,
     springs_of,
 )
 from fe_drivetrain.dynamics.bodies.springs import (
@@ -197,6 +198,10 @@ def _add_stage(
         pins, element, places = carrier_element(carrier, planets, f"{name} carrier")
         planets = replace(planets, pins=places)
         built.superelements.append(element)
+    if stage.bushing is not None and free is not TURNS:
+        bushed, rows, planets = in_bushings(planets, stage.bushing)
+        pins += bushed
+        built.springs.extend(rows)
     ground = held_by(gives.housing, f"{name} ring", planets.position)
     made, rows = _planetary(machine, stage, number, planets, ground, gives.rims.get(number))
     built.bodies.extend([*made, *pins])
@@ -229,7 +234,7 @@ def _add_shafts(
     built: Assembly,
 ) -> None:
     """Add shafts between the bodies that they hold, as beams or as solids."""
-    bends = level is Level.FLEXIBLE
+    bends, free = level is Level.FLEXIBLE, TURNS if level is Level.TORSIONAL else ALL
     for name in gives.shafts.keys() - {s.name for s in machine.shafts if s.kind == "shaft"}:
         raise InputError(
             f"no shaft {name!r} that bends is in {machine.title!r}: name another, or leave it out"
@@ -237,11 +242,18 @@ def _add_shafts(
     bodies = list(built.bodies)
     for k, shaft in enumerate(machine.shafts):
         if shaft.name in gives.shafts:
+            if shaft.spline is not None:
+                raise InputError(
+                    f"shaft {shaft.name!r} has a spline, which a condensed shaft cannot have: "
+                    "leave the condensed one out"
+                )
             solid = gives.shafts[shaft.name]
             bodies, element = solid_shaft(machine, k, ends[k], bodies, solid, built.seats)
             built.superelements.append(element)
         else:
-            bodies, rows = beam_shaft(machine, k, ends[k], bodies, bends, elements, built.seats)
+            bodies, rows = beam_shaft(
+                machine, k, ends[k], bodies, bends, elements, free, built.seats
+            )
             built.springs.extend(rows)
     built.bodies[:] = bodies
 
@@ -265,6 +277,20 @@ def _add_bearings(machine: MachineTable, gives: Flexible, built: Assembly) -> No
         place = Place(body, centres[body])
         stiffness = gives.bearings.get(bearing.name, bearing.stiffness)
         built.springs.extend(bushing(bearing.name, place, holder, at, stiffness))
+
+
+def shaft_ends(machine: MachineTable, k: int) -> tuple[str, str]:
+    """Bodies at the ends of a shaft by its number, from 0."""
+    kinds = [stage.kind == "planetary" for stage in machine.stages]
+    rears = [f"stage {n} {'carrier' if kind else 'gear'}" for n, kind in enumerate(kinds, 1)]
+    fronts = [f"stage {n} {'sun' if kind else 'pinion'}" for n, kind in enumerate(kinds, 1)]
+    return ["rotor", *fronts][k], [*rears, "generator"][k]
+
+
+def is_bushed(machine: MachineTable, number: int) -> bool:
+    """Whether the pins of a stage, by its number from 1, sit in bushings."""
+    stage = machine.stages[number - 1]
+    return isinstance(stage, PlanetaryData) and stage.bushing is not None
 
 
 def planetary_set(

@@ -14,6 +14,7 @@ from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.bodies import assemble
 from fe_drivetrain.dynamics.bodies.levels import Assembly, Level, assembly
+from fe_drivetrain.dynamics.bodies.machine_shafts import spline_bodies
 from fe_drivetrain.dynamics.bodies.modes import spring_frequencies, system_modes
 from fe_drivetrain.dynamics.bodies.system import System, without_massless
 from fe_drivetrain.dynamics.torsion.system import resolved
@@ -47,6 +48,8 @@ def free_count(machine: MachineTable) -> int:
 def turning(machine: MachineTable) -> dict[str, float]:
     """Speed of each body about its axis over the rotor's, of its teeth or radii alone."""
     found = {"rotor": 1.0, "generator": machine.speeds[-1]}
+    rows = zip(machine.shafts, machine.speeds, strict=True)
+    found |= {name: speed for shaft, speed in rows for name in spline_bodies(shaft)}
     for number, stage in enumerate(machine.stages, start=1):
         name, front, rear = f"stage {number}", machine.speeds[number - 1], machine.speeds[number]
         if not isinstance(stage, PlanetaryData):
@@ -59,6 +62,7 @@ def turning(machine: MachineTable) -> dict[str, float]:
             ring_over_planet = (stage.centre_distance + planet) / planet
         found |= {f"{name} carrier": front, f"{name} sun": rear, f"{name} ring": 0.0}
         for k in range(stage.planets):
+            found[f"{name} bushed pin {k + 1}"] = front
             found[f"{name} planet {k + 1}"] = front * (1 - ring_over_planet)
     return found
 
@@ -69,7 +73,7 @@ def turning_motion(machine: MachineTable, made: Assembly, system: System) -> Flo
     q = np.zeros(len(system.names))
     for i, label in enumerate(system.names):
         name, _, motion = label.rpartition(" ")
-        stage, planet, _ = name.partition(" planet ")
+        stage, planet, _ = name.replace(" bushed pin ", " planet ").partition(" planet ")
         if motion == "rx":
             q[i] = speeds.get(name, 0.0)
         elif planet and motion in ("uy", "uz"):

@@ -111,34 +111,31 @@ def beam_shaft(
     bodies: list[Body],
     bends: bool,
     elements: int,
+    free: frozenset[str],
     seats: dict[str, tuple[str, tuple[float, float, float]]],
 ) -> tuple[list[Body], list[Spring]]:
     """The shaft's nodes and springs, its mass, and what its bearings hold."""
     shaft = machine.shafts[k]
     x, y, z = machine.axes[k]
     on = [b for b in machine.bearings if b.holds == shaft.name]
-    stations = shaft_stations(machine, k, elements) if bends else [0.0, shaft.length]
-    names = [ends[0], *(f"{shaft.name} node {i}" for i in range(1, len(stations) - 1)), ends[1]]
-    speed = machine.speeds[k]
     if shaft.kind == "rigid":
-        bodies = [
-            replace(b, free=frozenset(), tied_to=ends[0]) if b.name == ends[1] else b
-            for b in bodies
-        ]
-        seats.update({b.name: (ends[0], (x + b.at, y, z)) for b in on})
-        return bodies, []
-    bodies = [
-        *bodies,
-        *(
-            Body(n, (x + s, y, z), speed=speed)
-            for n, s in zip(names, stations, strict=True)
-            if n not in ends
-        ),
+        return _rigid_shaft(machine, k, ends, bodies, seats)
+    stations = shaft_stations(machine, k, elements if bends else 0)
+    rears, fronts = station_names(shaft, ends, stations)
+    new = [
+        Body(name, (x + s, y, z), speed=machine.speeds[k], free=free)
+        for pair in zip(rears, fronts, stations, strict=True)
+        for s, name in ((pair[2], one) for one in dict.fromkeys(pair[:2]))
+        if name not in ends
     ]
+    bodies = [*bodies, *new]
     index = {body.name: i for i, body in enumerate(bodies)}
     springs: list[Spring] = []
+    for one, two in zip(rears, fronts, strict=True):
+        if one != two:
+            springs += spline_springs(machine, k, bodies[index[two]], bodies[index[one]])
     for i, (start, stop) in enumerate(pairwise(stations)):
-        pair = names[i], names[i + 1]
+        pair = fronts[i], rears[i + 1]
         label = shaft.name if len(stations) == 2 else f"{shaft.name} element {i + 1}"
         places = [Place(name, bodies[index[name]].position) for name in pair]
         springs += shaft_springs(label, shaft, places, (start, stop), (x, y, z))
@@ -149,20 +146,115 @@ def beam_shaft(
     for bearing in on:
         where = x + bearing.at
         nearest = min(range(len(stations)), key=lambda i: abs(stations[i] - bearing.at))
-        seats[bearing.name] = (names[nearest], (where, y, z))
+        side = rears if bearing.at <= stations[nearest] else fronts
+        seats[bearing.name] = (side[nearest], (where, y, z))
     return bodies, springs
 
 
+def _rigid_shaft(
+    machine: MachineTable,
+    k: int,
+    ends: tuple[str, str],
+    bodies: list[Body],
+    seats: dict[str, tuple[str, tuple[float, float, float]]],
+) -> tuple[list[Body], list[Spring]]:
+    """Both ends as one body, or on the spline between them; the front one has the bearings."""
+    shaft, (x, y, z) = machine.shafts[k], machine.axes[k]
+    on = [b for b in machine.bearings if b.holds == shaft.name]
+    seats.update({b.name: (ends[0], (x + b.at, y, z)) for b in on})
+    if shaft.spline is not None:
+        named = {body.name: body for body in bodies}
+        return bodies, spline_springs(machine, k, named[ends[1]], named[ends[0]])
+    bodies = [
+        replace(b, free=frozenset(), tied_to=ends[0]) if b.name == ends[1] else b for b in bodies
+    ]
+    return bodies, []
+
+
+def station_names(
+    shaft: ShaftData, ends: tuple[str, str], stations: Sequence[float]
+) -> tuple[list[str], list[str]]:
+    """Bodies at a shaft's stations: where the piece before ends, and where the next one begins.
+
+    They are two at its spline, of which one may be an end of the shaft.
+
+    Parameters
+    ----------
+    shaft : ShaftData
+        The shaft.
+    ends : tuple of str
+        Bodies at its ends.
+    stations : sequence of float
+        x of its stations from where it begins [m], see `shaft_stations`.
+    """
+    rears = [ends[0], *(f"{shaft.name} node {i}" for i in range(1, len(stations) - 1)), ends[1]]
+    fronts = list(rears)
+    if shaft.spline is not None and shaft.kind == "shaft":
+        at, last = shaft.spline.at, len(stations) - 1
+        j = min(range(len(stations)), key=lambda i: abs(stations[i] - at))
+        before, behind = spline_bodies(shaft)
+        rears[j] = before if j > 0 else ends[0]
+        fronts[j] = behind if j < last else ends[1]
+    return rears, fronts
+
+
+def spline_bodies(shaft: ShaftData) -> tuple[str, str]:
+    """Names of what is before the spline of a shaft, and behind it."""
+    return f"{shaft.name} before spline", f"{shaft.name} behind spline"
+
+
+def spline_springs(machine: MachineTable, k: int, behind: Body, before: Body) -> list[Spring]:
+    """Springs "SHAFT spline ux" and so on, of a spline with all flanks in contact.
+
+    Parameters
+    ----------
+    machine : MachineTable
+        Table of the machine.
+    k : int
+        Number of the shaft, from 0.
+    behind, before : Body
+        What the spline joins.
+    """
+    shaft, (x, y, z) = machine.shafts[k], machine.axes[k]
+    if shaft.spline is None:
+        return []
+    one, other = (Place(body.name, body.position) for body in (behind, before))
+    at = (x + shaft.spline.at, y, z)
+    return bushing(f"{shaft.name} spline", one, other, at, shaft.spline.bushing)
+
+
+def shaft_torsion(shaft: ShaftData) -> float | None:
+    """Torsional stiffness of a shaft with its spline [N m/rad]; none of what is rigid."""
+    parts = [] if shaft.spline is None else [shaft.spline.bushing[3]]
+    if shaft.kind != "rigid":
+        slices = shaft_slices(shaft, 0.0, shaft.length)
+        parts.append(shaft.torsion or in_series(slices, shaft.material)[1][3])
+    return 1 / fsum(1 / k for k in parts) if len(parts) > 1 else next(iter(parts), None)
+
+
 def shaft_stations(machine: MachineTable, k: int, elements: int) -> list[float]:
-    """x of a shaft's nodes from where it begins: elements, bearings, steps [m]."""
+    """x of a shaft's nodes from where it begins: elements, bearings, steps, spline [m].
+
+    Parameters
+    ----------
+    machine : MachineTable
+        Table of the machine.
+    k : int
+        Number of the shaft, from 0.
+    elements : int
+        Number of elements; 0 of a shaft in one piece on each side of its spline.
+    """
     shaft = machine.shafts[k]
-    if shaft.kind != "shaft":
-        return [0.0, shaft.length]
-    steps = () if shaft.sections is None else np.cumsum([s.length for s in shaft.sections])
-    seats = [b.at for b in machine.bearings if b.holds == shaft.name]
+    shaft_bends = shaft.kind == "shaft"
+    places = [shaft.spline.at] if shaft.spline is not None and shaft_bends else []
+    if elements and shaft_bends:
+        places += np.linspace(0.0, shaft.length, elements + 1).tolist()
+        places += [b.at for b in machine.bearings if b.holds == shaft.name]
+        if shaft.sections is not None:
+            places += np.cumsum([s.length for s in shaft.sections]).tolist()
     least = APART * shaft.length
     found = [0.0]
-    for at in sorted([*np.linspace(0.0, shaft.length, elements + 1).tolist(), *seats, *steps]):
+    for at in sorted(places):
         if found[-1] + least < at < shaft.length - least:
             found.append(round(float(at), 9))
     return [*found, shaft.length]

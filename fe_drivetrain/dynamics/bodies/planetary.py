@@ -5,12 +5,13 @@ angle psi_k about it, from y to z. Every body has up to six degrees of freedom; 
 turns with the carrier, the springs of equal planets do not change in time.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import cos, pi, sin
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.spatial import along_x
 from fe_drivetrain.dynamics.bodies.bodies import ALL, Body
@@ -94,7 +95,8 @@ class PlanetarySet:
     free : frozenset[str]
         Degrees of freedom of the bodies; `PLANE` of a stage that stays in its plane.
     pins : tuple[Place, ...]
-        Bodies that the planets are on, of a flexible carrier; the carrier where there are none.
+        Bodies that the planets are on, of a flexible carrier or in bushings; the carrier where
+        there are none.
     sun_damping, ring_damping : float
         Damping of each mesh along its line of action [N s/m].
     """
@@ -266,11 +268,64 @@ def springs_of(stage: PlanetarySet) -> list[Spring]:
     return found
 
 
+def pin_place(stage: PlanetarySet, k: int, *, flexible: bool, bushed: bool) -> Place:
+    """What planet k, from 0, is on: its pin in a bushing, on a carrier that gives, or the carrier.
+
+    Parameters
+    ----------
+    stage : PlanetarySet
+        The stage.
+    k : int
+        Number of the planet, from 0.
+    flexible, bushed : bool
+        Whether the carrier gives, and whether the pin is in a bushing.
+    """
+    if bushed:
+        return Place(stage.full_name(f"bushed pin {k + 1}"), stage.centre(k))
+    if flexible:
+        return Place(stage.full_name(f"pin body {k + 1}"), stage.centre(k))
+    return Place(stage.full_name("carrier"), stage.centre())
+
+
+def in_bushings(
+    stage: PlanetarySet, stiffness: ArrayLike
+) -> tuple[list[Body], list[Spring], PlanetarySet]:
+    """Pins that sit in the carrier with a bushing each (Al-Hamadani 2018, Eq 5.5).
+
+    Parameters
+    ----------
+    stage : PlanetarySet
+        The stage, with the pins of its carrier where that gives.
+    stiffness : array_like, (6,)
+        Stiffness along and about x, the radius and the tangent of the planet [N/m, N m/rad].
+
+    Returns
+    -------
+    bodies : list of Body
+        Pins without mass, "NAME bushed pin 1" and so on.
+    springs : list of Spring
+        Bushings, "NAME bushing 1 ux" and so on, at the middles of the pins.
+    stage : PlanetarySet
+        The stage with its planets on these pins.
+    """
+    pins = tuple(pin_place(stage, k, flexible=False, bushed=True) for k in range(len(stage.angles)))
+    springs: list[Spring] = []
+    for k, pin in enumerate(pins):
+        host = stage.pins[k] if stage.pins else pin_place(stage, k, flexible=False, bushed=False)
+        name, axes = stage.full_name(f"bushing {k + 1}"), _axes_of(stage, k)
+        springs += bushing(name, pin, host, pin.centre, stiffness, 0.0, axes)
+    return [Body(pin.body, pin.centre) for pin in pins], springs, replace(stage, pins=pins)
+
+
+def _axes_of(stage: PlanetarySet, k: int) -> Floats:
+    """(3, 3) x, the radius and the tangent of planet k."""
+    psi = stage.angles[k]
+    return np.array([[1.0, 0.0, 0.0], [0.0, cos(psi), sin(psi)], [0.0, -sin(psi), cos(psi)]])
+
+
 def pin_springs(stage: PlanetarySet, k: int, planet: Place, carrier: Place) -> list[Spring]:
     """The springs between planet k, from 0, and what carries it."""
-    psi = stage.angles[k]
-    out, along = np.array([0.0, cos(psi), sin(psi)]), np.array([0.0, -sin(psi), cos(psi)])
-    axes = np.vstack([[1.0, 0.0, 0.0], out, along])
+    axes = _axes_of(stage, k)
     found: list[Spring] = []
     for bearing in stage.bearings:
         at = np.asarray(planet.centre) + along_x(bearing.offset)

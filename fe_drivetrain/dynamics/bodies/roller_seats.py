@@ -24,7 +24,8 @@ from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.flexible import Flexible
-from fe_drivetrain.dynamics.bodies.levels import Assembly, planetary_set
+from fe_drivetrain.dynamics.bodies.levels import Assembly, is_bushed, planetary_set
+from fe_drivetrain.dynamics.bodies.planetary import pin_place
 from fe_drivetrain.dynamics.bodies.springs import Place, Spring, directed
 from fe_drivetrain.dynamics.bodies.static import Static, gaps_and_contacts, static
 from fe_drivetrain.dynamics.bodies.system import System, with_stiffness
@@ -129,13 +130,12 @@ def planet_seats(
     """
     stage = planetary_set(machine, number, turned=azimuth * machine.speeds[number - 1])
     on_pins = flexible is not None and number in flexible.carriers
+    bushed = is_bushed(machine, number)
     found = []
     for k, angle in enumerate(stage.angles):
         centre = stage.centre(k)
         planet = Place(stage.planet_names[k], centre)
-        pin = Place(stage.full_name("carrier"), stage.centre())
-        if on_pins:
-            pin = Place(stage.full_name(f"pin body {k + 1}"), centre)
+        pin = pin_place(stage, k, flexible=on_pins, bushed=bushed)
         for place in stage.bearings:
             at = (centre[0] + place.offset, centre[1], centre[2])
             label = stage.full_name(f"pin {k + 1} {place.name}").strip()

@@ -8,8 +8,9 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
-from fe_drivetrain.dynamics.bodies.levels import torsional
+from fe_drivetrain.dynamics.bodies.levels import shaft_ends, torsional
 from fe_drivetrain.dynamics.bodies.machine import machine_of
+from fe_drivetrain.dynamics.bodies.machine_shafts import shaft_torsion, spline_bodies
 from fe_drivetrain.dynamics.torsion.gear_table import GearTable
 
 
@@ -38,13 +39,15 @@ def gear_table(drivetrain: Drivetrain | MachineTable) -> GearTable:
     machine = drivetrain if isinstance(drivetrain, MachineTable) else machine_of(drivetrain)
     system = torsional(machine)
     inertias = {part.name: part.inertia for part in system.inertias}
-    springs = {element.name: element for element in system.elements}
-    for shaft in machine.shafts:
-        if shaft.name not in springs:
+    stiffness = {shaft.name: shaft_torsion(shaft) for shaft in machine.shafts}
+    for k, shaft in enumerate(machine.shafts):
+        if stiffness[shaft.name] is None:
             raise InputError(
                 f"shaft {shaft.name!r} of {machine.title!r} is rigid, which a table of torsional "
                 "springs cannot have: give its torsion, in N m/rad"
             )
+        for part, end in zip(spline_bodies(shaft), shaft_ends(machine, k), strict=True):
+            inertias[end] += inertias.get(part, 0.0)
     own = machine.generator
     return GearTable.model_validate(
         {
@@ -53,7 +56,7 @@ def gear_table(drivetrain: Drivetrain | MachineTable) -> GearTable:
             "shafts": [
                 {
                     "name": shaft.name,
-                    "stiffness": shaft.torsion or springs[shaft.name].stiffness,
+                    "stiffness": stiffness[shaft.name],
                     "damping": shaft.damping,
                 }
                 for shaft in machine.shafts

@@ -22,7 +22,7 @@ from fe_drivetrain.dynamics.bodies.equations import Equations
 from fe_drivetrain.dynamics.bodies.flexible import Flexible, Housing
 from fe_drivetrain.dynamics.bodies.gear_pairs import contact_ratios
 from fe_drivetrain.dynamics.bodies.gearbox_mount import assumed_inertia, mass_inside
-from fe_drivetrain.dynamics.bodies.levels import Level, machine_system
+from fe_drivetrain.dynamics.bodies.levels import Level, machine_system, shaft_ends
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.bodies.meshing import machine_meshing, varying_equations
 from fe_drivetrain.dynamics.bodies.steady_state import free_motions
@@ -87,7 +87,8 @@ class Running:
             There is neither a shaft nor a body of that name.
         """
         fronts = {
-            shaft.name: _front(self.machine, k) for k, shaft in enumerate(self.machine.shafts)
+            shaft.name: shaft_ends(self.machine, k)[0]
+            for k, shaft in enumerate(self.machine.shafts)
         }
         body = fronts.get(on, on)
         if body not in self.system.bodies:
@@ -227,13 +228,6 @@ def _check(torque: float, rotor_speed: float, backlash: float) -> None:
             raise InputError(f"{name} is {value:g} {unit} but must be above 0 {unit}: change it")
     if not 0.0 <= backlash < 0.01:
         raise InputError(f"backlash is {backlash:g} m but must be from 0 to 0.01 m: change it")
-
-
-def _front(machine: Machine, k: int) -> str:
-    """Body from which a shaft begins."""
-    if k == 0:
-        return "rotor"
-    return f"stage {k} {'sun' if machine.stages[k - 1].kind == 'planetary' else 'pinion'}"
 
 
 def _with_backlash(
