@@ -148,8 +148,8 @@ def causes_of(
             "assumed: walls of 0.035 to 0.1 of its diameter", 1.0,
         ),
         Cause(
-            "spline", "sun free behind its spline", "", 1.0, 0.0, 1.0,
-            "held by its shaft (0) or free in tilt and sideways (1)", 1.0, far=1.0,
+            "spline", "sun tilts in its spline", "diameters of width", 1.0, 0.3, 1.0,
+            "assumed: teeth of 5 mm of module, as wide as usual", 0.6, far=1.0,
         ),
         Cause(
             "spacing", "distance of the bearings", "times that of the file", 1.0, 0.75, 1.25,

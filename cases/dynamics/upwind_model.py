@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from math import cos, pi, radians, sin
+from types import MappingProxyType
 
 import numpy as np
 
 from fe_drivetrain.bearing import Bearing, equilibrium, forces
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.components import GRAVITY
-from fe_drivetrain.common.spatial import point_motions
 from fe_drivetrain.drivetrain_file import Material
+from fe_drivetrain.drivetrain_file.couplings import SplineData
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics import (
@@ -27,6 +28,7 @@ from fe_drivetrain.dynamics import (
     System,
     assemble,
     assembly,
+    machine_seat,
     planet_seats,
     planetary_set,
     static,
@@ -39,9 +41,13 @@ from fe_drivetrain.elasticity.solve.condensation import Condensed
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0)
 RIM_WALL = 0.06
 """Wall of a ring outside of its teeth, over the diameter of these."""
+ELEMENTS = 2
+"""Of each shaft, beside its bearings and steps."""
 RIM_HARMONICS = tuple(range(2, 8))
-STIFF = 1e-5
-"""Compliance of a carrier that counts as rigid, over that of its body."""
+RIGID_SEAT = 1e-13
+"""Compliance of a pin's seat where it is rigid [m/N, rad/(N m)]."""
+TOOTH = 5e-3
+"""Width of a tooth of the spline and its gap, over pi [m]."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +64,7 @@ class Guess:
     rim : float
         Compliance of the ring's rim in its plane, over that of a wall of `RIM_WALL`.
     spline : float
-        1 where the sun is free sideways and in tilt behind a spline, 0 where its shaft holds it.
+        Width of the teeth of a spline behind the sun, over its diameter; 0 of a shaft in one piece.
     bushing, overhung : float
         Compliance in tilt of a pin's bushing at its middle, or at the upwind cheek [rad/(N m)].
     mount : float
@@ -216,16 +222,32 @@ class FirstStage:
         """Upwind over downwind, of means over a turn."""
         return self.turned(guess).ratio
 
-    def on_rollers(self, guess: Guess, azimuths: Floats | None = None) -> Turned:
-        """Equilibria with the planets' bearings on rollers with clearance."""
+    def on_rollers(
+        self,
+        guess: Guess,
+        azimuths: Floats | None = None,
+        carrier: Mapping[str, Bearing] = MappingProxyType({}),
+    ) -> Turned:
+        """Equilibria with the planets' bearings on rollers with clearance.
+
+        Parameters
+        ----------
+        guess : Guess
+            Its clearances count.
+        azimuths : ndarray, (a,), optional
+            Azimuths of the carrier [rad].
+        carrier : mapping of str to Bearing
+            Rollers of the carrier's bearings by name, with their clearance.
+        """
         assert self.rollers is not None
         at = self.few() if azimuths is None else azimuths
         tight = replace(guess, clearance=0.0, clearance_difference=0.0)
         found: list[Static | OnRollers] = []
         for azimuth in (float(a) for a in at):
-            machine, gives = self._changed(tight), self._flexible(guess)
+            machine, gives = self._changed(tight), self._flexible(tight)
             system, load = self._system(tight, azimuth)
-            seats = []
+            parts = assembly(machine, Level.FLEXIBLE, azimuth, ELEMENTS, True, flexible=gives)
+            seats = [machine_seat(parts, name, one) for name, one in carrier.items()]
             for pin, side in zip(self.pins, (-0.5, 0.5), strict=True):
                 play = guess.clearance + side * guess.clearance_difference
                 bearing = self.rollers.with_rows(clearance=play / 2)
@@ -295,12 +317,9 @@ class FirstStage:
 
     def _built(self, guess: Guess, azimuth: float) -> tuple[System, Floats]:
         machine = self._changed(guess)
-        parts = assembly(
-            machine, Level.FLEXIBLE, azimuth, 2, True, flexible=self._flexible(guess)
-        )
+        gives = self._flexible(guess)
+        parts = assembly(machine, Level.FLEXIBLE, azimuth, ELEMENTS, True, flexible=gives)
         bodies, springs = parts.bodies, parts.springs
-        if guess.spline:
-            springs = [s for s in springs if not _holds_sun(machine, s.name)]
         for twist in self._twists(guess):
             more, springs = with_twist(springs, twist)
             bodies = [*bodies, *more]
@@ -323,26 +342,36 @@ class FirstStage:
             )
             for pin in self.stage.pins
         )
-        first = self.stage.model_copy(
-            update={
-                "pins": pins,
-                "slices": self.slices,
-                "sun_planet": guess.meshes * self.stage.sun_planet,
-                "ring_planet": guess.meshes * self.stage.ring_planet,
-            }
-        )
-        return self.machine.model_copy(update={"stages": (first, *self.machine.stages[1:])})
+        changes: dict[str, object] = {
+            "pins": pins,
+            "slices": self.slices,
+            "sun_planet": guess.meshes * self.stage.sun_planet,
+            "ring_planet": guess.meshes * self.stage.ring_planet,
+        }
+        if guess.bushing or guess.overhung:
+            changes["bushing"] = seat_of(guess.bushing, guess.overhung, self.cheek)
+        stages = (self.stage.model_copy(update=changes), *self.machine.stages[1:])
+        shafts = list(self.machine.shafts)
+        if guess.spline:
+            shafts[1] = shafts[1].model_copy(update={"spline": self.spline(guess.spline)})
+        return self.machine.model_copy(update={"stages": stages, "shafts": tuple(shafts)})
+
+    def spline(self, width: float) -> SplineData:
+        """A spline as large as the sun, its teeth as wide as a share of its diameter."""
+        diameter = 2 * self.stage.sun_radius
+        at = min(self.stage.face_width, 0.5 * self.machine.shafts[1].length)
+        teeth = max(6, round(diameter / TOOTH))
+        return SplineData(teeth=teeth, diameter=diameter, length=width * diameter, at=at)
 
     def _flexible(self, guess: Guess) -> Flexible:
         gives = Flexible()
         if guess.mount and isinstance(self.mount.housing, Housing):
             housing = self.mount.housing
-            soft = replace(housing, stiffness=housing.stiffness / guess.mount)
-            gives = replace(self.mount, housing=soft)
-        if guess.carrier or guess.bushing or guess.overhung:
-            seat = guess.bushing * tilting(0.0) + guess.overhung * tilting(self.cheek)
-            own = on_bushings(self.body, max(guess.carrier, STIFF), seat)
-            gives = replace(gives, carriers={1: own})
+            stands = replace(housing, stiffness=housing.stiffness / guess.mount)
+            gives = replace(self.mount, housing=stands)
+        if guess.carrier:
+            soft = replace(self.body, stiffness=self.body.stiffness / guess.carrier)
+            gives = replace(gives, carriers={1: soft})
         if guess.rim:
             radius = self.ring_radius
             wall = RIM_WALL * 2 * radius * guess.rim ** (-1 / 3)
@@ -361,6 +390,12 @@ class FirstStage:
             rigidity = STEEL.shear_modulus * pi / 32 * (outer**4 - inner**4) / guess.ring_twist
             found.append(FaceTwist("stage 1 ring", rigidity, width, -1))
         return found
+
+    @property
+    def has_spline(self) -> bool:
+        """Whether the sun's shaft can have a spline."""
+        shaft = self.machine.shafts[1]
+        return shaft.kind == "shaft" and shaft.spline is None
 
     @property
     def sun_root(self) -> float:
@@ -393,46 +428,25 @@ class FirstStage:
 GAPS = ("pin_tilt", "pin_place", "sun_lead", "ring_lead")
 
 
-def _holds_sun(machine: MachineTable, spring: str) -> bool:
-    """Whether a spring is one of the sun's shaft, across it or in tilt."""
-    first = (machine.shafts[1].name, f"{machine.shafts[1].name} element 1")
-    return spring in [f"{name} {motion}" for name in first for motion in ("uy", "uz", "ry", "rz")]
-
-
-def tilting(x: float) -> Floats:
-    """(6, 6) compliance of a pin at its middle, for one unit of tilt at a place along it [m]."""
-    found = np.zeros((6, 6))
-    # a force across at the middle has the arm x about the place that tilts
-    for move, tilt, sign in ((1, 5, 1.0), (2, 4, -1.0)):
-        arm = np.zeros(6)
-        arm[[move, tilt]] = -sign * x, 1.0
-        found += np.outer(arm, arm)
-    return found
-
-
-def on_bushings(body: Condensed, factor: float, seat: Floats) -> Condensed:
-    """A carrier that gives by a factor, with its pins on bushings.
+def seat_of(pin: float, cheek: float, at: float) -> Floats:
+    """(6, 6) stiffness at a pin's middle of a bushing there and one at a cheek [N/m, N, N m/rad].
 
     Parameters
     ----------
-    body : Condensed
-        Free, at its hub, first, and its pins.
-    factor : float
-        On its compliance.
-    seat : ndarray, (6, 6)
-        Compliance of each pin's bushing, at the pin's middle.
+    pin, cheek : float
+        Compliances in tilt of the bushings at the middle and at the cheek [rad/(N m)].
+    at : float
+        x of the cheek from the middle [m].
     """
-    order = [body.names.index("hub"), *(k for k, name in enumerate(body.names) if name != "hub")]
-    rows = np.concatenate([6 * k + np.arange(6) for k in order])
-    K = body.stiffness[np.ix_(rows, rows)]
-    places = body.positions[order]
-    give = factor * np.linalg.inv(K[6:, 6:]) + np.kron(np.eye(len(order) - 1), seat)
-    held = np.linalg.inv(give)
-    rigid = point_motions(places[1:], places[0])
-    apart = np.hstack([-rigid, np.eye(len(rigid))])
-    stiffness = apart.T @ held @ apart
-    names = tuple(body.names[k] for k in order)
-    return Condensed(names, places, (stiffness + stiffness.T) / 2, np.zeros((len(rows), 3)))
+    give = RIGID_SEAT * np.eye(6)
+    # a force across at the middle has the arm of the place that tilts
+    for compliance, x in ((pin, 0.0), (cheek, at)):
+        for move, tilt, sign in ((1, 5, 1.0), (2, 4, -1.0)):
+            arm = np.zeros(6)
+            arm[[move, tilt]] = -sign * x, 1.0
+            give += compliance * np.outer(arm, arm)
+    stiffness = np.linalg.inv(give)
+    return np.asarray((stiffness + stiffness.T) / 2)
 
 
 def linearised(machine: Machine, rollers: Bearing, torque: float) -> MachineTable:
