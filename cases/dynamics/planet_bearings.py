@@ -6,9 +6,9 @@ import numpy as np
 
 from fe_drivetrain.bearing import Bearing, cylindrical, equilibrium, forces, load_zones, pressures
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.dynamics.carrier_in_size import carrier_in_size
 from fe_drivetrain.cases.dynamics.own_planet_bearings import own
 from fe_drivetrain.common import Floats
-from fe_drivetrain.drivetrain_file import CarrierComponent, library_component
 from fe_drivetrain.dynamics import (
     Flexible,
     Machine,
@@ -22,7 +22,6 @@ from fe_drivetrain.dynamics import (
     static_on_rollers,
     steady_load,
 )
-from fe_drivetrain.geometry.planet_carrier import PlanetCarrier
 from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
@@ -198,28 +197,7 @@ def state_share(page: Page) -> None:
 
 def own_carrier() -> Flexible:
     """The library's carrier, of the 5 MW gearbox, in the size of this pin circle, as beams."""
-    component = library_component("planet_carrier")
-    assert isinstance(component, CarrierComponent)
-    large = component.planet_carrier
-    size = 2 * RADIUS / large.pin_circle_diameter
-    lengths = [
-        "cheek_thickness",
-        "cheek_diameter",
-        "sun_bore_diameter",
-        "web_inner_diameter",
-        "web_outer_diameter",
-        "hub_diameter",
-        "hub_bore_diameter",
-        "hub_length",
-    ]
-    own = PlanetCarrier(
-        planets=3,
-        pin_circle_diameter=2 * RADIUS,
-        pin_diameter=0.16,
-        gap=0.24,
-        **{name: size * getattr(large, name) for name in lengths},
-    )
-    return Flexible({1: carrier_frame(component.model_copy(update={"planet_carrier": own}))})
+    return Flexible({1: carrier_frame(carrier_in_size(RADIUS, pin_diameter=0.16, gap=0.24))})
 
 
 def scaled(carrier: Flexible, factor: float) -> Flexible:

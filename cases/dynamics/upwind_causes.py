@@ -10,7 +10,8 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import qmc
 
-from fe_drivetrain.cases.dynamics.upwind_model import RIGID, RIM_WALL, FirstStage, Guess
+from fe_drivetrain.cases.dynamics.upwind_guess import RIGID, RIM_WALL, Guess
+from fe_drivetrain.cases.dynamics.upwind_model import FirstStage
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics import Machine, machine_pairs
@@ -23,6 +24,8 @@ GRADE = 6
 LEAD = 25e-6
 """Sum of two helix slope deviations where the gears are not given [m]."""
 NONE = "does nothing"
+QUIET = 5e-3
+"""Change of the ratio that counts as none."""
 
 
 @dataclass(frozen=True)
@@ -106,80 +109,173 @@ def causes_of(
     grade = f"assumed: both gears of ISO 1328-1 grade {GRADE}, errors adding"
     found = [
         Cause(
-            "carrier", "carrier winds up between its cheeks", "times its body", 1.0, *carrier,
-            "computed: carriers of thinner and thicker cheeks and webs", 1.0,
+            "carrier",
+            "carrier winds up between its cheeks",
+            "times its body",
+            1.0,
+            *carrier,
+            "computed: carriers of thinner and thicker cheeks and webs",
+            1.0,
         ),
         Cause(
-            "overhung", "pins on bushings at the upwind cheek", "nrad/(N m)", 1e9, 1e-9, 1e-8,
-            "the thesis's Eq 5.5 has no number, and no place along the pin", 0.0, model=True,
+            "overhung",
+            "pins on bushings at the upwind cheek",
+            "nrad/(N m)",
+            1e9,
+            1e-9,
+            1e-8,
+            "the thesis's Eq 5.5 has no number, and no place along the pin",
+            0.0,
+            model=True,
         ),
         Cause(
-            "bushing", "pins on bushings at their middle", "nrad/(N m)", 1e9, 1e-9, 1e-8,
-            "assumed: 1e8 to 1e9 N m/rad, pressed into two cheeks", 3e-9,
+            "bushing",
+            "pins on bushings at their middle",
+            "nrad/(N m)",
+            1e9,
+            1e-9,
+            1e-8,
+            "assumed: 1e8 to 1e9 N m/rad, pressed into two cheeks",
+            3e-9,
         ),
         Cause(
-            "pin_tilt", "bores of a pin out of line, or a loose fit downwind", "mrad", 1e3,
-            -1e-4, 1e-4, "assumed: 0.03 mm between the cheeks",
+            "pin_tilt",
+            "bores of a pin out of line, or a loose fit downwind",
+            "mrad",
+            1e3,
+            -1e-4,
+            1e-4,
+            "assumed: 0.03 mm between the cheeks",
         ),
         Cause(
-            "clearance_difference", "downwind bearings looser than upwind ones", "um", 1e6,
-            -5e-5, 5e-5, "assumed: the width of one class of clearance",
+            "clearance_difference",
+            "downwind bearings looser than upwind ones",
+            "um",
+            1e6,
+            -5e-5,
+            5e-5,
+            "assumed: the width of one class of clearance",
+        ),
+        Cause("sun_lead", "helix slope of sun and planet", "um", 1e6, -sun, sun, grade),
+        Cause("ring_lead", "helix slope of planet and ring", "um", 1e6, -ring, ring, grade),
+        Cause(
+            "shift",
+            "bearings off the middle of the faces",
+            "mm",
+            1e3,
+            -5e-3,
+            5e-3,
+            "assumed: half of what faces differ by",
+            far=8.0,
         ),
         Cause(
-            "sun_lead", "helix slope of sun and planet", "um", 1e6, -sun, sun, grade
+            "sun_twist",
+            "sun winds up along its face",
+            "times its root circle",
+            1.0,
+            pitch,
+            1.03,
+            "its pitch circle to its root circle, solid",
+            1.0,
         ),
         Cause(
-            "ring_lead", "helix slope of planet and ring", "um", 1e6, -ring, ring, grade
+            "ring_twist",
+            "ring winds up along its face",
+            "times its wall",
+            1.0,
+            0.5,
+            2.0,
+            f"assumed: a wall of {RIM_WALL:g} of its diameter, half to twice",
+            1.0,
         ),
         Cause(
-            "shift", "bearings off the middle of the faces", "mm", 1e3, -5e-3, 5e-3,
-            "assumed: half of what faces differ by", far=8.0,
+            "rim",
+            "ring bends in its plane",
+            "times its wall",
+            1.0,
+            0.2,
+            5.0,
+            "assumed: walls of 0.035 to 0.1 of its diameter",
+            1.0,
         ),
         Cause(
-            "sun_twist", "sun winds up along its face", "times its root circle", 1.0, pitch, 1.03,
-            "its pitch circle to its root circle, solid", 1.0,
+            "spline",
+            "sun tilts in its spline",
+            "diameters of width",
+            1.0,
+            0.3,
+            1.0,
+            "assumed: teeth of 5 mm of module, as wide as usual",
+            0.6,
+            far=1.0,
         ),
         Cause(
-            "ring_twist", "ring winds up along its face", "times its wall", 1.0, 0.5, 2.0,
-            f"assumed: a wall of {RIM_WALL:g} of its diameter, half to twice", 1.0,
+            "spacing",
+            "distance of the bearings",
+            "times that of the file",
+            1.0,
+            0.75,
+            1.25,
+            "assumed: widths of bearings, and what is between them",
+            1.0,
+            far=1.5,
         ),
         Cause(
-            "rim", "ring bends in its plane", "times its wall", 1.0, 0.2, 5.0,
-            "assumed: walls of 0.035 to 0.1 of its diameter", 1.0,
+            "meshes",
+            "stiffness of the meshes",
+            "times that of the file",
+            1.0,
+            0.7,
+            1.3,
+            "as printed sources differ",
+            1.0,
+            far=3.0,
         ),
         Cause(
-            "spline", "sun tilts in its spline", "diameters of width", 1.0, 0.3, 1.0,
-            "assumed: teeth of 5 mm of module, as wide as usual", 0.6, far=1.0,
+            "bearings",
+            "stiffness of the bearings",
+            "times that of rollers",
+            1.0,
+            0.5,
+            1.5,
+            "assumed: rings that give, other rollers",
+            1.0,
+            far=3.0,
         ),
+        Cause("pin_place", "first pin out of place", "um", 1e6, 0.0, 5e-5, "assumed tolerance"),
         Cause(
-            "spacing", "distance of the bearings", "times that of the file", 1.0, 0.75, 1.25,
-            "assumed: widths of bearings, and what is between them", 1.0, far=1.5,
+            "pitch",
+            "pitch moment of the rotor",
+            "kN m",
+            1e-3,
+            -moment,
+            moment,
+            "range of the published tests with other loads than torque",
         ),
-        Cause(
-            "meshes", "stiffness of the meshes", "times that of the file", 1.0, 0.7, 1.3,
-            "as printed sources differ", 1.0, far=3.0,
-        ),
-        Cause(
-            "bearings", "stiffness of the bearings", "times that of rollers", 1.0, 0.5, 1.5,
-            "assumed: rings that give, other rollers", 1.0, far=3.0,
-        ),
-        Cause(
-            "pin_place", "first pin out of place", "um", 1e6, 0.0, 5e-5, "assumed tolerance"
-        ),
-        Cause("pitch", "pitch moment of the rotor", "kN m", 1e-3, -moment, moment,
-              "range of the published tests with other loads than torque"),
         Cause("yaw", "yaw moment of the rotor", "kN m", 1e-3, -moment, moment, "as of pitch"),
         Cause(
-            "slope", "slope of the main shaft", "deg", 180 / pi, 0.0, np.radians(6.0),
-            "usual: 4 to 6 degrees", far=3.0,
+            "slope",
+            "slope of the main shaft",
+            "deg",
+            180 / pi,
+            0.0,
+            np.radians(6.0),
+            "usual: 4 to 6 degrees",
+            far=3.0,
         ),
     ]
     if has_mount:
         found.insert(
             12,
             Cause(
-                "mount", "gearbox on its mount", "times that of the file", 1.0, 0.3, 3.0,
-                "assumed: a third to three times", 1.0,
+                "mount",
+                "gearbox on its mount",
+                "times that of the file",
+                1.0,
+                0.3,
+                3.0,
+                "assumed: a third to three times",
+                1.0,
             ),
         )
     return found
@@ -255,12 +351,12 @@ class Effect:
         if self.needed is not None:
             times = self.needed / max(abs(self.cause.low), abs(self.cause.high))
             return f"{formatted(abs(times), 2)} times its range would be needed"
-        if self.swing < 5e-3:
+        if self.swing < QUIET:
             return NONE
         return f"never alone: {self.most:.2f} at most"
 
 
-def effect(stage: FirstStage, cause: Cause, best: Guess, wanted: float, points: int) -> Effect:
+def effect(stage: FirstStage, cause: Cause, best: Guess, wanted: float) -> Effect:
     """What a cause does alone, beside the best guess, and where it gives a ratio.
 
     Parameters
@@ -273,44 +369,47 @@ def effect(stage: FirstStage, cause: Cause, best: Guess, wanted: float, points: 
         Best guess of the others.
     wanted : float
         Ratio that is asked for.
-    points : int
-        Number of values that the inverse tries before it closes in.
     """
 
-    def ratio(value: float, base: Guess) -> float:
-        return stage.ratio(base.but(cause.field, value))
+    def of(base: Guess) -> Callable[[float], float]:
+        return lambda value: stage.ratio(base.but(cause.field, value))
 
-    ends = cause.low, cause.high
-    alone = (ratio(ends[0], RIGID), ratio(ends[1], RIGID))
-    beside = (ratio(ends[0], best), ratio(ends[1], best))
-    rises = 1.0 if alone[1] >= alone[0] else -1.0
-    neutral = float(getattr(RIGID, cause.field))
-    reach = cause.far * max(abs(cause.low), abs(cause.high))
-    if neutral == 1.0:
-        tried = np.geomspace(1 / cause.far, cause.far, points)
-    else:
-        signed = rises if cause.low < 0 else 1.0
-        tried = signed * np.geomspace(reach / 300, reach, points)
-    quiet = max(abs(r - 1.0) for r in alone) < 2e-3
-    if quiet:
-        tried = tried[[0, -1]]
-    values, needed = _inverse(lambda v: ratio(v, RIGID), tried, wanted)
-    _, second = _inverse(lambda v: ratio(v, best), tried, wanted)
-    return Effect(cause, alone, beside, needed, second, max(values))
+    tight, loose = of(RIGID), of(best)
+    alone, beside = ((f(cause.low), f(cause.high)) for f in (tight, loose))
+    if max(alone) < 1.0 + QUIET:
+        return Effect(cause, alone, beside, None, None, max(alone))
+    end = cause.high if alone[1] >= alone[0] else cause.low
+    needed, most = needed_value(tight, end, cause.far, wanted)
+    second, _ = needed_value(loose, end, cause.far, wanted)
+    return Effect(cause, alone, beside, needed, second, most)
 
 
-def _inverse(
-    ratio: Callable[[float], float], tried: Floats, wanted: float
-) -> tuple[list[float], float | None]:
-    """Ratios at values, and the first value between them at which it is what is wanted."""
-    values = [ratio(float(v)) for v in tried]
-    for k in range(len(values) - 1):
-        if (values[k] - wanted) * (values[k + 1] - wanted) <= 0.0:
-            root = brentq(
-                lambda v: ratio(v) - wanted, float(tried[k]), float(tried[k + 1]), rtol=1e-4
-            )
-            return values, float(root)
-    return values, None
+def needed_value(
+    ratio: Callable[[float], float], end: float, far: float, wanted: float
+) -> tuple[float | None, float]:
+    """The value at which a ratio that grows is what is wanted, and the largest of those tried.
+
+    Parameters
+    ----------
+    ratio : callable
+        Ratio by the value.
+    end : float
+        End of the range, from which values are doubled.
+    far : float
+        How many times the end is tried.
+    wanted : float
+        Ratio.
+    """
+    before, value, most = 0.0, end, -1.0
+    while abs(value) <= far * abs(end):
+        here = ratio(value)
+        if here >= wanted:
+            root = brentq(lambda v: ratio(v) - wanted, before, value, xtol=1e-3 * abs(value))
+            return float(root), max(most, here)
+        if here <= most:
+            break
+        most, before, value = here, value, 2 * value
+    return None, most
 
 
 def sampled(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import cos, pi, radians, sin
 from types import MappingProxyType
@@ -11,6 +11,7 @@ from types import MappingProxyType
 import numpy as np
 
 from fe_drivetrain.bearing import Bearing, equilibrium, forces
+from fe_drivetrain.cases.dynamics.upwind_guess import RIM_WALL, Guess, Turned
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.drivetrain_file import Material
@@ -39,8 +40,6 @@ from fe_drivetrain.dynamics.bodies.flexible import Housing
 from fe_drivetrain.elasticity.solve.condensation import Condensed
 
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0)
-RIM_WALL = 0.06
-"""Wall of a ring outside of its teeth, over the diameter of these."""
 ELEMENTS = 2
 """Of each shaft, beside its bearings and steps."""
 RIM_HARMONICS = tuple(range(2, 8))
@@ -48,112 +47,6 @@ RIGID_SEAT = 1e-13
 """Compliance of a pin's seat where it is rigid [m/N, rad/(N m)]."""
 TOOTH = 5e-3
 """Width of a tooth of the spline and its gap, over pi [m]."""
-
-
-@dataclass(frozen=True)
-class Guess:
-    """What a model takes where nothing is published; all left out is rigid, exact and tight.
-
-    Attributes
-    ----------
-    carrier : float
-        Compliance of the carrier over that of its body.
-    sun_twist, ring_twist : float
-        Compliance in torsion along the face, over that of the sun's solid root circle and of the
-        ring's wall.
-    rim : float
-        Compliance of the ring's rim in its plane, over that of a wall of `RIM_WALL`.
-    spline : float
-        Width of the teeth of a spline behind the sun, over its diameter; 0 of a shaft in one piece.
-    bushing, overhung : float
-        Compliance in tilt of a pin's bushing at its middle, or at the upwind cheek [rad/(N m)].
-    mount : float
-        Compliance of the gearbox's mount over that of the file.
-    clearance, clearance_difference : float
-        Diametral clearance of the planets' bearings: mean, and downwind less upwind [m].
-    pin_tilt, pin_place : float
-        Tilt of all pins, the upwind end ahead [rad]; place of the first pin, ahead [m].
-    sun_lead, ring_lead : float
-        Gap of the meshes at the downwind end of the face less that at the upwind end [m].
-    shift, spacing : float
-        x of the bearings' middle from that of the faces, and their distance over the file's.
-    pitch, yaw : float
-        Moments about y and z on the rotor [N m].
-    slope : float
-        Slope of the main shaft, its rear end low [rad].
-    meshes, bearings : float
-        Stiffness of meshes and of the planets' bearings, over the model's.
-    """
-
-    carrier: float = 0.0
-    sun_twist: float = 0.0
-    ring_twist: float = 0.0
-    rim: float = 0.0
-    spline: float = 0.0
-    bushing: float = 0.0
-    overhung: float = 0.0
-    mount: float = 0.0
-    clearance: float = 0.0
-    clearance_difference: float = 0.0
-    pin_tilt: float = 0.0
-    pin_place: float = 0.0
-    sun_lead: float = 0.0
-    ring_lead: float = 0.0
-    shift: float = 0.0
-    spacing: float = 1.0
-    pitch: float = 0.0
-    yaw: float = 0.0
-    slope: float = 0.0
-    meshes: float = 1.0
-    bearings: float = 1.0
-
-    def but(self, name: str, value: float) -> Guess:
-        """The guess with another value."""
-        return replace(self, **{name: value})
-
-
-RIGID = Guess()
-NAMES = tuple(one.name for one in fields(Guess))
-
-
-@dataclass(frozen=True)
-class Turned:
-    """Loads of the planets' bearings and what goes with them, over azimuths.
-
-    Attributes
-    ----------
-    azimuths : ndarray, (a,)
-        Of the first planet, from y to z [rad].
-    loads : ndarray, (a, planets, 2)
-        Radial loads of the upwind and the downwind bearing [N].
-    tilts : ndarray, (a, planets)
-        Turn of a planet about its radius [rad].
-    ring : ndarray, (a, planets, slices)
-        Forces of the slices of the ring's meshes, from upwind [N].
-    """
-
-    azimuths: Floats
-    loads: Floats
-    tilts: Floats
-    ring: Floats
-
-    @property
-    def ratio(self) -> float:
-        """Upwind over downwind, of means over planets and azimuths."""
-        up, down = self.loads.mean(axis=(0, 1))
-        return float(up / down)
-
-    @property
-    def ratios(self) -> Floats:
-        """(planets,) upwind over downwind, of means over azimuths."""
-        up, down = self.loads.mean(axis=0).T
-        return np.asarray(up / down)
-
-    @property
-    def sharing(self) -> Floats:
-        """(a, planets) load of both bearings of a planet, over the mean of planets."""
-        each = self.loads.sum(axis=2)
-        return np.asarray(each / each.mean(axis=1, keepdims=True))
 
 
 @dataclass(frozen=True)
@@ -176,6 +69,8 @@ class FirstStage:
         x of the upwind cheek's middle from that of the pins [m].
     slices : int
         Of the meshes of the first stage.
+    steps : int
+        Azimuths of the carrier between two planets that means are taken over.
     """
 
     machine: MachineTable
@@ -184,9 +79,10 @@ class FirstStage:
     mount: Flexible
     rollers: Bearing | None
     cheek: float
-    slices: int = 15
+    slices: int = 7
+    steps: int = 1
     _kept: dict[tuple[Guess, float], tuple[System, Floats]] = field(
-        default_factory=dict, compare=False, repr=False
+        default_factory=dict, init=False, compare=False, repr=False
     )
 
     @property
@@ -209,8 +105,8 @@ class FirstStage:
         return max(offsets) - min(offsets)
 
     def few(self) -> Floats:
-        """(2,) azimuths whose planets stand at equal steps of a turn."""
-        return np.array([0.0, pi / self.stage.planets])
+        """(steps,) azimuths at which planets stand at equal steps of a turn [rad]."""
+        return np.arange(self.steps) * 2 * pi / (self.steps * self.stage.planets)
 
     def turned(self, guess: Guess, azimuths: Floats | None = None) -> Turned:
         """Equilibria at azimuths of the carrier, on linear bearings."""
@@ -221,6 +117,13 @@ class FirstStage:
     def ratio(self, guess: Guess) -> float:
         """Upwind over downwind, of means over a turn."""
         return self.turned(guess).ratio
+
+    def tangential(self, guess: Guess) -> Floats:
+        """(steps, planets, 2) forces of the planets' bearings along their circle, backwards [N]."""
+        found = [self._solved(guess, float(azimuth)) for azimuth in self.few()]
+        planets = range(1, self.stage.planets + 1)
+        names = [[f"stage 1 pin {k} {pin} uz" for pin in self.pins] for k in planets]
+        return -np.array([[[one.force(name) for name in row] for row in names] for one in found])
 
     def on_rollers(
         self,
@@ -264,7 +167,9 @@ class FirstStage:
             state = one.static if isinstance(one, OnRollers) else one
             loads.append([[one.radial(f"stage 1 pin {k} {p}") for p in self.pins] for k in planets])
             angles = planetary_set(self.machine, 1, turned=float(azimuth)).angles
-            moved = [state.system.motion_of(f"stage 1 planet {k}", state.q) for k in planets]
+            of = state.system.motion_of
+            own = of("stage 1 carrier", state.q)
+            moved = [of(f"stage 1 planet {k}", state.q) - own for k in planets]
             tilts.append(
                 [m[4] * cos(a) + m[5] * sin(a) for m, a in zip(moved, angles, strict=True)]
             )
@@ -275,7 +180,8 @@ class FirstStage:
                     for n in (self.slices,)
                 ]
             )
-        return Turned(azimuths, np.array(loads), np.array(tilts), np.array(ring))
+        converged = all(one.converged for one in found if isinstance(one, OnRollers))
+        return Turned(azimuths, np.array(loads), np.array(tilts), np.array(ring), converged)
 
     def responses(self, guess: Guess, azimuth: float) -> Floats:
         """(planets, 2, 2, 4) radial and tangential force to gravity, torque, pitch and yaw.
@@ -299,15 +205,34 @@ class FirstStage:
                     out[k, i, :, j] = [found.force(f"{name} {u}") for u in ("uy", "uz")]
         return out
 
+    def run_out(self, guess: Guess, eccentricity: float) -> float:
+        """Amplitude of the first upwind bearing's load by a sun that is out of round [N].
+
+        Parameters
+        ----------
+        guess : Guess
+            Its linear part.
+        eccentricity : float
+            Of the sun's teeth against its axis [m].
+        """
+        system, load = self._system(guess, 0.0)
+        at = [k for k, name in enumerate(system.spring_names) if name.startswith("stage 1 sun-p")]
+        name = f"stage 1 pin 1 {self.pins[0]}"
+        still = static(system, load).wrench(name)[1:3]
+        along = still / np.hypot(*still)
+        moved = []
+        for axis in (1, 2):
+            gaps = {system.spring_names[k]: eccentricity * system.directions[k, axis] for k in at}
+            moved.append(along @ static(system, 0.0 * load, gaps).wrench(name)[1:3])
+        return float(np.hypot(*moved))
+
     def _solved(self, guess: Guess, azimuth: float) -> Static:
         system, load = self._system(guess, azimuth)
         return static(system, load, self._gaps(guess))
 
     def _system(self, guess: Guess, azimuth: float) -> tuple[System, Floats]:
         """The system and its load; of guesses that differ by gaps alone, the same one."""
-        shape = replace(
-            guess, **dict.fromkeys((*GAPS, "clearance", "clearance_difference"), 0.0)
-        )
+        shape = guess.shape
         key = (shape, azimuth)
         if key not in self._kept:
             if len(self._kept) > 40:
@@ -392,6 +317,11 @@ class FirstStage:
         return found
 
     @property
+    def holds_tilt(self) -> bool:
+        """Whether the planets' bearings resist tilt about the radius."""
+        return all(np.ravel(pin.stiffness)[4] > 0 for pin in self.stage.pins)
+
+    @property
     def has_spline(self) -> bool:
         """Whether the sun's shaft can have a spline."""
         shaft = self.machine.shafts[1]
@@ -416,16 +346,15 @@ class FirstStage:
         up, down = self.pins
         for k in range(1, self.stage.planets + 1):
             place = guess.pin_place if k == 1 else 0.0
-            gaps[f"stage 1 pin {k} {up} uz"] = place + ahead
-            gaps[f"stage 1 pin {k} {down} uz"] = place - ahead
+            for pin, across in ((up, place + ahead), (down, place - ahead)):
+                gaps[f"stage 1 pin {k} {pin} uz"] = across
+                if self.holds_tilt:
+                    gaps[f"stage 1 pin {k} {pin} ry"] = guess.pin_tilt
             for mesh, lead in (("sun", guess.sun_lead), ("ring", guess.ring_lead)):
                 for i in range(self.slices):
                     at = (i + 0.5) / self.slices - 0.5
                     gaps[f"stage 1 {mesh}-planet {k} slice {i + 1}"] = at * lead
         return {name: gap for name, gap in gaps.items() if gap}
-
-
-GAPS = ("pin_tilt", "pin_place", "sun_lead", "ring_lead")
 
 
 def seat_of(pin: float, cheek: float, at: float) -> Floats:
@@ -474,9 +403,7 @@ def linearised(machine: Machine, rollers: Bearing, torque: float) -> MachineTabl
     pins = tuple(
         pin.model_copy(
             update={
-                "stiffness": (
-                    np.ravel(pin.stiffness)[0], K[2, 2], K[2, 2], 0.0, K[3, 3], K[3, 3]
-                )
+                "stiffness": (np.ravel(pin.stiffness)[0], K[2, 2], K[2, 2], 0.0, K[3, 3], K[3, 3])
             }
         )
         for pin in stage.pins

@@ -1,4 +1,4 @@
-"""A gear that winds up along its face: the bar in torsion on an elastic foundation, and refusals."""
+"""A gear that winds up along its face, beside a bar in torsion on an elastic foundation."""
 
 import math
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -82,7 +83,8 @@ def with_twist(springs: Sequence[Spring], twist: FaceTwist) -> tuple[list[Body],
     places = {k: _slice_of(one) for k, one in enumerate(springs) if twist.gear in one.by}
     places = {k: place for k, place in places.items() if place}
     count = max(places.values(), default=0)
-    if count < 2 or len(places) % count or list(places.values()).count(count) * count != len(places):
+    even = [list(places.values()).count(place) for place in range(1, count + 1)]
+    if count < 2 or len(set(even)) > 1:
         raise InputError(
             f"twist of {twist.gear!r}: its meshes must have one number of slices, 2 or more, but "
             f"have {len(places)} slices numbered up to {count}: give slices"
@@ -97,7 +99,7 @@ def with_twist(springs: Sequence[Spring], twist: FaceTwist) -> tuple[list[Body],
     between = twist.rigidity * count / twist.width
     held = Spring(f"{twist.gear} winding 1", {inwards[0]: _ANGLE}, 2 * between)
     found.append(held)
-    for i, (near, far) in enumerate(zip(inwards[:-1], inwards[1:], strict=True), start=2):
+    for i, (near, far) in enumerate(pairwise(inwards), start=2):
         by = {far: _ANGLE, near: -_ANGLE}
         found.append(Spring(f"{twist.gear} winding {i}", by, between))
     return [Body(name, free=frozenset({"ux"})) for name in names], found
