@@ -25,14 +25,12 @@ from fe_drivetrain.cases.dynamics.upwind_causes import (
     sampled,
 )
 from fe_drivetrain.cases.dynamics.upwind_figures import (
-    figures_of,
-    history,
+    figures,
     peak_after_top,
-    printed_beside,
-    show_figures,
 )
 from fe_drivetrain.cases.dynamics.upwind_guess import RIGID, Guess, Turned
 from fe_drivetrain.cases.dynamics.upwind_model import FirstStage, linearised
+from fe_drivetrain.cases.dynamics.upwind_printed import BEST, MEASURED, compare
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
@@ -44,10 +42,7 @@ from fe_drivetrain.report.suite import ChosenDrivetrain, Page, Record, Run
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 
 NAME = "grc_750kw"
-MEASURED = (1.41, 1.47)
-"""Upwind over downwind of the thesis."""
 MOMENT = 3e5  # N m, of published tests of the 750 kW gearbox
-RADIUS = 24.0  # m, of its rotor
 HERO = "Upwind over downwind load of a planet, by the range of each cause alone"
 PLAYS = (1e-4, 3e-4)
 """Diametral clearances of the carrier's bearings [m]."""
@@ -95,7 +90,8 @@ def run(run: Run, page: Page) -> None:
             stage.ratio(best), ratios, stage.ratio(favourable(effects)), wanted, len(effects)
         )
     with run.step("rollers"), one_blas_thread():
-        clearances, peaks = on_rollers(page, stage, machine, best, run.quick)
+        turns = turns_of(stage, best, moment, run.quick)
+        clearances = on_rollers(page, stage, machine, best, turns)
     check(page, stage, best, carriers)
     rows = [one.record(together.best) for one in sorted(effects, key=lambda e: -e.swing)]
     rows += clearances
@@ -103,10 +99,13 @@ def run(run: Run, page: Page) -> None:
     show_causes(page, effects, rows, chosen.own)
     show_together(page, together, carriers)
     page.section("Where loads peak")
+    peaks = [peak_row(name, turned) for name, turned in turns.items()]
     page.table("Planet A: turned on from above the sun, clockwise seen from upwind", peaks)
     page.data("peaks", peaks)
     with run.step("figures"), one_blas_thread():
-        figures(run, page, chosen, stage, (best, fitted), moment)
+        found = figures(run, page, chosen, stage, best if fitted is None else fitted[0], best)
+        if not chosen.own and fitted is not None:
+            compare(page, stage, found, turns, (best, fitted, effects), moment)
     answer(page, chosen, effects, together, rows)
     assumptions(page, machine, causes)
 
@@ -187,38 +186,41 @@ def with_diagonals(machine: Machine) -> MachineTable:
     return rows.model_copy(update={"stages": (first, *machine.stages[1:])})
 
 
-def on_rollers(
-    page: Page, stage: FirstStage, machine: Machine, best: Guess, quick: bool
-) -> tuple[list[Record], list[Record]]:
-    """What clearances do on rollers, as rows of the causes; and where loads peak, by model."""
+def turns_of(stage: FirstStage, best: Guess, moment: float, quick: bool) -> dict[str, Turned]:
+    """Turns of the best guess, and with moments of the hub."""
     at = azimuths((2 if quick else 4) * stage.stage.planets)
-    peaks = [peak_row("best guess", stage.turned(best, at))]
-    for name, sign in (("pitch", -1), ("pitch", 1), ("yaw", -1), ("yaw", 1)):
-        moment = sign * stage.torque
-        turned = stage.turned(best.but(name, moment), at)
-        peaks.append(peak_row(f"with {name} of {moment / 1e3:+.0f} kN m", turned))
+    turns = {BEST: stage.turned(best, at)}
+    for name, sign in (("pitch", 1), ("pitch", -1), ("yaw", 1), ("yaw", -1)):
+        words = f"with {name} of {sign * moment / 1e3:+.0f} kN m"
+        turns[words] = stage.turned(best.but(name, sign * moment), at)
+    return turns
+
+
+def on_rollers(
+    page: Page, stage: FirstStage, machine: Machine, best: Guess, turns: dict[str, Turned]
+) -> list[Record]:
+    """What clearances do on rollers, as rows of the causes; adds turns with them."""
     if stage.rollers is None:
         page.note("The file names no rollers of the planets' bearings: clearances are left out.")
-        return [], peaks
-    first, last = (
-        (stage.on_rollers(base.but("clearance", play)) for play in CLEARANCES)
-        for base in (RIGID, best)
-    )
-    of_planets = list(first), list(last)
+        return []
+    at = turns[BEST].azimuths
     known = catalogued(machine)
     names = [b.name for b in machine.bearings if b.holds == "stage 1 carrier" and b.name in known]
     kinds = {name: bearing_of(known[name]) for name in names}
-    of_carrier: tuple[list[Turned], list[Turned]] = ([], [])
+    of_planets = [
+        [stage.on_rollers(base.but("clearance", play)) for play in CLEARANCES]
+        for base in (RIGID, best)
+    ]
+    of_carrier: list[list[Turned]] = [[], []]
     for play in PLAYS if kinds else ():
         loose = {name: kind.with_rows(clearance=play / 2) for name, kind in kinds.items()}
-        for base, at_, into in ((RIGID, None, of_carrier[0]), (best, at, of_carrier[1])):
+        for base, at_, into in zip((RIGID, best), (None, at), of_carrier, strict=True):
             into.append(stage.on_rollers(base.but("clearance", CLEARANCES[0]), at_, loose))
         words = f"with {1e3 * play:g} mm of clearance in the carrier's bearings"
-        peaks.append(peak_row(words, of_carrier[1][-1]))
-    every = [one for group in (*of_planets, *of_carrier) for one in group]
+        turns[words] = of_carrier[1][-1]
     page.holds(
         "every equilibrium on rollers has converged",
-        all(one.converged for one in every),
+        all(one.converged for group in (*of_planets, *of_carrier) for one in group),
         why="the energy is convex",
         source="residual below 1e-9 of the load",
     )
@@ -226,11 +228,11 @@ def on_rollers(
     rows = [rolling_row("clearance of the planets' bearings", CLEARANCES, of_planets, centre)]
     if kinds:
         rows.append(rolling_row("clearance of the carrier's bearings", PLAYS, of_carrier, centre))
-    return rows, peaks
+    return rows
 
 
 def rolling_row(
-    words: str, plays: tuple[float, float], found: tuple[list[Turned], list[Turned]], best: float
+    words: str, plays: tuple[float, float], found: Sequence[Sequence[Turned]], best: float
 ) -> Record:
     """Row of the table of causes, of a clearance on rollers: both ends of its range."""
     alone, beside = ([one.ratio for one in group] for group in found)
@@ -373,51 +375,6 @@ def show_together(page: Page, together: Together, carriers: Carriers) -> None:
     page.data("carriers", carriers.rows)
 
 
-def figures(
-    run: Run,
-    page: Page,
-    chosen: ChosenDrivetrain,
-    stage: FirstStage,
-    models: tuple[Guess, tuple[Guess, str] | None],
-    moment: float,
-) -> None:
-    """Compute and show Figures 7.1 to 7.10, of the best guess and of the fitted model."""
-    best, fit = models
-    if fit is None:
-        page.note("No cause gives the ratio beside the others: there is no fitted model.")
-        fit = best, "best guess"
-    operation = chosen.drivetrain.operation
-    assert operation is not None
-    assert operation.rated_power is not None
-    speed = chosen.rotor_speeds()[1]
-    radius = RADIUS if not chosen.own else 70.0 / speed
-    mass, _ = stage.machine.rotor.apart
-    seconds = 60.0 if run.quick else 600.0
-    loads = history(operation.rated_power, speed, max(mass, 1e3), radius, seconds)
-    count = 6 if run.quick else 36
-    found, fitted = (
-        figures_of(stage, guess, loads, speed, moment, count) for guess in (best, fit[0])
-    )
-    show_figures(page, found, fitted, stage.machine)
-    if not chosen.own:
-        rows = printed_beside(found, fitted, uneven_tilt(stage, fit[0]))
-        page.table(f"Printed, ours, verdict; fitted: {fit[1]}", rows)
-        page.data("figures", rows)
-        page.assume(
-            "operation",
-            "16 m/s, medium turbulence, shear 0.2",
-            "",
-            "measured torque and pitch moment are not public; a computed history of the hub",
-        )
-
-
-def uneven_tilt(stage: FirstStage, guess: Guess) -> float:
-    """Difference of pins' tilts that moves the ratio by as much as planets are printed to [rad]."""
-    step = 1e-5
-    per = (stage.ratio(guess.but("pin_tilt", guess.pin_tilt + step)) - stage.ratio(guess)) / step
-    return (MEASURED[1] - MEASURED[0]) / per
-
-
 def answer(
     page: Page,
     chosen: ChosenDrivetrain,
@@ -430,10 +387,10 @@ def answer(
     low, high = together.ends
     reach = [e for e in effects if not e.cause.model and e.plausible(e.needed)]
     wanted = f"{together.wanted:g}"
-    all_of = f"together they give {together.best:.2f} ({low:.2f} to {high:.2f})"
+    all_of = f"together they give {together.best:.2f}, at most {together.most:.2f}"
     if reach:
         verdict = (
-            f"{reach[0].cause.words.capitalize()} can give {wanted} alone; all guesses {all_of}."
+            f"{reach[0].cause.words.capitalize()} can give {wanted} alone; all guesses: {all_of}."
         )
     else:
         verdict = (
@@ -444,19 +401,19 @@ def answer(
     band = max(together.best - low, high - together.best)
     page.found("upwind over downwind, best guess of all", together.best, band)
     compare = {} if chosen.own else {"beside": together.wanted, "by": "thesis, least"}
-    figures_ = [
+    key = [
         page.value("upwind over downwind, best guess of all", together.best, band, **compare),
+        page.value("all guesses at the ends that raise it", together.most),
         page.value("carrier alone, most", max(by["carrier"].alone)),
-        page.value("sun that winds up alone, least", min(by["sun_twist"].alone)),
         page.value(f"guesses over their ranges that reach {wanted} [%]", 100 * together.share),
     ]
     held, tilt = by["overhung"].needed_beside, by["pin_tilt"].needed_beside
     if held is not None:
         name = "needed: tilt stiffness of pins held at the upwind cheek [MN m/rad]"
-        figures_.append(page.value(name, 1e-6 / held))
+        key.append(page.value(name, 1e-6 / held))
     if tilt is not None:
         limit = 1e3 * by["pin_tilt"].cause.high
-        figures_.append(
+        key.append(
             page.value("needed: tilt of all pins [mrad]", 1e3 * tilt, beside=limit, by="tolerance")
         )
     what = "makes a planet's upwind bearing carry"
@@ -465,7 +422,7 @@ def answer(
         if chosen.own
         else f"What {what} {MEASURED[0]:g} to {MEASURED[1]:g} times its downwind one's load?",
         verdict,
-        figures_,
+        key,
         HERO,
         [
             "Carrier, clearances, fits and tolerances are not public: each range is a guess with "
@@ -478,6 +435,6 @@ def answer(
 def assumptions(page: Page, machine: Machine, causes: Sequence[Cause]) -> None:
     """What no source gives."""
     for one in causes:
-        page.assume(one.words, f"{one.shown(one.low)} to {one.shown(one.high)}", "", one.basis)
+        page.assume(one.words, one.shown(one.low, one.high), "", one.basis)
     for text in machine.assumed:
         page.assume(text.partition(":")[0][:60], "", "", text)

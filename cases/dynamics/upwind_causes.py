@@ -65,10 +65,10 @@ class Cause:
     far: float = 30.0
     model: bool = False
 
-    def shown(self, value: float) -> str:
-        """A value with its unit."""
-        unit = f" {self.unit}" if self.unit else ""
-        return f"{formatted(self.scale * value, 3)}{unit}"
+    def shown(self, *values: float) -> str:
+        """Values with their unit."""
+        words = " to ".join(formatted(self.scale * value, 3) for value in values)
+        return f"{words} {self.unit}"
 
 
 def leads(machine: Machine) -> tuple[float, float]:
@@ -331,7 +331,7 @@ class Effect:
         moved = [ratio - best for ratio in self.beside]
         return {
             "cause": cause.words,
-            "range of the guess": f"{cause.shown(cause.low)} to {cause.shown(cause.high)}",
+            "range of the guess": cause.shown(cause.low, cause.high),
             "ratio, alone": low if low == high else f"{low} to {high}",
             "moves the best guess by": " to ".join(f"{m:+.3f}" for m in moved),
             "needed alone": needed,
@@ -342,7 +342,7 @@ class Effect:
 
     def verdict(self) -> str:
         """Whether it can be what was measured."""
-        if self.cause.model and self.plausible(self.needed):
+        if self.cause.model and self.needed is not None:
             return "reaches it: a choice of the model, at one cheek"
         if self.plausible(self.needed):
             return "reaches it alone"
