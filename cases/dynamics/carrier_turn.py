@@ -103,8 +103,8 @@ def answer(page: Page, rows: list[Record], ratios: list[float], uneven: float) -
         ],
         RATIOS,
         [
-            "The thesis's ratios are of a softer carrier and bearings with clearance, whose data "
-            "are not public."
+            "What would give the thesis's ratios is tested cause by cause in "
+            "dynamics/upwind_bearing."
         ],
         claim="holds" if reached else "does not hold",
     )

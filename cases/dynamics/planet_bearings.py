@@ -140,7 +140,7 @@ def answer(page: Page, ratios: list[float], worst: float, softer: list[float]) -
         RATIO.format(next(iter(MOMENTS))),
         [
             "The carrier's stiffness and the clearances of the gearbox are not public: both are "
-            "assumed."
+            "assumed, and their ranges tested in dynamics/upwind_bearing."
         ],
         claim="holds" if reached else "holds in part" if any(met) else "does not hold",
     )
@@ -185,9 +185,9 @@ def state_share(page: Page) -> None:
         "A pin carries 2 F tangentially and a couple of the helix, which loads both bearings by "
         "the same radial force. Only a shift of the load along the pin makes them differ: "
         f"{printed:g} has the share {share:.3f} of it, {share - 0.5:.3f} of the distance of "
-        f"{1e3 * SPREAD:g} mm. A carrier whose "
-        "upwind cheek leads does that; its drawing, the fit of its pins and all clearances of the "
-        "gearbox are not public."
+        f"{1e3 * SPREAD:g} mm. A carrier whose upwind cheek leads does that; what else does, and "
+        "how much of each would be needed, is in dynamics/upwind_bearing. The carrier here is of "
+        "beams between rigid cheeks: as a solid, there, it is softer."
     )
     page.text(
         "The thesis's own pressures contradict each other: the upwind bearing of drivetrain B has "
@@ -294,7 +294,7 @@ def verdicts(
             "printed": "1.42, 1.47, 1.41",
             "ours": f"{min(ratios):.3f} to {max(ratios):.3f}",
             "verdict": "not reached",
-            "reason": "the carrier's stiffness is not public; ours is stiff",
+            "reason": "each possible cause is tested in dynamics/upwind_bearing",
         },
         {
             "figure": "upwind over downwind in operation, with moments of the hub",
