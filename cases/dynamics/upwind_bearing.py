@@ -11,6 +11,7 @@ import numpy as np
 from fe_drivetrain.bearing import Bearing
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.carrier_in_size import carrier_in_size
+from fe_drivetrain.cases.dynamics.carrier_turn import isotropic
 from fe_drivetrain.cases.dynamics.planets_on_pins import first_stage
 from fe_drivetrain.cases.dynamics.upwind_carriers import Carriers, carriers_for
 from fe_drivetrain.cases.dynamics.upwind_causes import (
@@ -73,11 +74,14 @@ def run(run: Run, page: Page) -> None:
         carriers = carriers_for(run, chosen, stage)
     slices, steps = (7, 1) if run.quick else (21, 2)
     stage = replace(stage, body=carriers.body, cheek=carriers.cheek, slices=slices, steps=steps)
-    moment = stage.torque if chosen.own else MOMENT
+    moment, reason = MOMENT, "range of the published tests with other loads than torque"
+    if chosen.own:
+        moment, reason = stage.torque, "as large as the torque"
     causes = causes_of(
         machine,
         (carriers.stiffest, carriers.softest),
-        moment,
+        (moment, reason),
+        stage.torque,
         has_mount=stage.mount.housing is not None,
     )
     causes = [one for one in causes if one.field != "spline" or stage.has_spline]
@@ -92,7 +96,7 @@ def run(run: Run, page: Page) -> None:
     with run.step("rollers"), one_blas_thread():
         turns = turns_of(stage, best, moment, run.quick)
         clearances = on_rollers(page, stage, machine, best, turns)
-    check(page, stage, best, carriers)
+    check(page, stage, machine, best, carriers)
     rows = [one.record(together.best) for one in sorted(effects, key=lambda e: -e.swing)]
     rows += clearances
     fitted = fitted_by(best, effects)
@@ -266,7 +270,7 @@ def peak_row(words: str, turned: Turned) -> Record:
     }
 
 
-def check(page: Page, stage: FirstStage, best: Guess, carriers: Carriers) -> None:
+def check(page: Page, stage: FirstStage, machine: Machine, best: Guess, carriers: Carriers) -> None:
     """Statics, symmetry, a tilted pin by hand, slices and meshes."""
     data = stage.stage
     forces = stage.tangential(best)
@@ -284,8 +288,8 @@ def check(page: Page, stage: FirstStage, best: Guess, carriers: Carriers) -> Non
         "pins tilted by 0.1 mrad, all else rigid: half the difference of both bearings [kN]",
         float(tilted[0] - tilted[1]) / 2e3,
         by_hand(stage, tilt) / 1e3,
-        within=1e-6,
-        why="solver; equal planets do not tilt the sun together",
+        within=1e-6 if isotropic(data, machine) else 5e-3,
+        why="solver; planets do not tilt the sun together where all bearings are isotropic",
         source="two springs in series: the bearings against tilt, both meshes against tilt",
         measure="reaction",
     )

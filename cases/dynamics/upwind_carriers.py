@@ -14,8 +14,8 @@ from fe_drivetrain.report.suite import ChosenDrivetrain, Record, Run
 from fe_drivetrain.shafts.fidelity import coarser, solid_component
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 
-QUICK, COARSER = 3.5, 1.35
-"""Factors on the mesh size: of a quick run, and of the mesh that a full run compares with."""
+QUICK, FULL, COARSER = 3.5, 1.35, 1.8
+"""Factors on the mesh size of the component: of a quick and a full run, and of variants."""
 VARIANTS = {
     "thinner cheeks, narrow webs": (0.7, 0.67),
     "thicker cheeks, wide webs": (1.3, 1.2),
@@ -57,7 +57,7 @@ def carriers_for(run: Run, chosen: ChosenDrivetrain, stage: FirstStage) -> Carri
     own = given or carrier_in_size(radius, planets, **sizes)
     part = own.planet_carrier
     cheek = -(part.gap + part.cheek_thickness) / 2
-    body = solid_component(coarser(own, QUICK if run.quick else 1.0)).body
+    body = solid_component(coarser(own, QUICK if run.quick else FULL)).body
     rows: list[Record] = [row_of(stage, "as scaled, solid", body)]
     change = None
     if not run.quick:
@@ -72,7 +72,8 @@ def carriers_for(run: Run, chosen: ChosenDrivetrain, stage: FirstStage) -> Carri
             "web_angle": webs * part.web_angle,
         }
         variant = varied(own, **sizes)
-        varies = carrier_frame(variant) if run.quick else solid_component(variant).body
+        solid = None if run.quick else solid_component(coarser(variant, COARSER)).body
+        varies = solid or carrier_frame(variant)
         base = basis if run.quick else body
         rows.append(row_of(stage, f"{name}, {'beams' if run.quick else 'solid'}", varies))
         factors.append(times_as_soft(stage, base, alone(stage, varies)))

@@ -21,6 +21,8 @@ from fe_drivetrain.report.suite import Record
 
 GRADE = 6
 """Accuracy grade of ISO 1328-1 that is assumed of all gears."""
+SIZED = 3.25e5
+"""Torque of a gearbox whose bushings have the stiffness that is assumed [N m]."""
 LEAD = 25e-6
 """Sum of two helix slope deviations where the gears are not given [m]."""
 NONE = "does nothing"
@@ -88,7 +90,11 @@ def leads(machine: Machine) -> tuple[float, float]:
 
 
 def causes_of(
-    machine: Machine, carrier: tuple[float, float], moment: float, has_mount: bool
+    machine: Machine,
+    carrier: tuple[float, float],
+    moment: tuple[float, str],
+    torque: float,
+    has_mount: bool,
 ) -> list[Cause]:
     """All causes with their ranges.
 
@@ -98,14 +104,17 @@ def causes_of(
         Machine whose gears' tolerances count.
     carrier : tuple of float
         Compliance of the softest and the stiffest plausible carrier, over that of its body.
-    moment : float
-        Moment of the rotor about y or z [N m].
+    moment : tuple of float and str
+        Moment of the rotor about y or z [N m], and where it is from.
+    torque : float
+        On the rotor [N m], in proportion to which bushings are stiff.
     has_mount : bool
         Whether the file has a mount of the gearbox.
     """
     teeth = getattr(machine.stages[0], "teeth", None)
     pitch = (1 - 2.5 / (teeth[-1] if teeth else 21)) ** 4
     sun, ring = leads(machine)
+    (most, of_moment), soft = moment, 1e-9 * SIZED / torque
     grade = f"assumed: both gears of ISO 1328-1 grade {GRADE}, errors adding"
     found = [
         Cause(
@@ -122,8 +131,8 @@ def causes_of(
             "pins on bushings at the upwind cheek",
             "nrad/(N m)",
             1e9,
-            1e-9,
-            1e-8,
+            soft,
+            10 * soft,
             "the thesis's Eq 5.5 has no number, and no place along the pin",
             0.0,
             model=True,
@@ -133,10 +142,10 @@ def causes_of(
             "pins on bushings at their middle",
             "nrad/(N m)",
             1e9,
-            1e-9,
-            1e-8,
-            "assumed: 1e8 to 1e9 N m/rad, pressed into two cheeks",
-            3e-9,
+            soft,
+            10 * soft,
+            "assumed: 1e8 to 1e9 N m/rad at 325 kN m of torque, pressed into two cheeks",
+            3 * soft,
         ),
         Cause(
             "pin_tilt",
@@ -248,11 +257,11 @@ def causes_of(
             "pitch moment of the rotor",
             "kN m",
             1e-3,
-            -moment,
-            moment,
-            "range of the published tests with other loads than torque",
+            -most,
+            most,
+            of_moment,
         ),
-        Cause("yaw", "yaw moment of the rotor", "kN m", 1e-3, -moment, moment, "as of pitch"),
+        Cause("yaw", "yaw moment of the rotor", "kN m", 1e-3, -most, most, "as of pitch"),
         Cause(
             "slope",
             "slope of the main shaft",
