@@ -107,7 +107,8 @@ def run(run: Run, page: Page) -> None:
     page.table("Planet A: turned on from above the sun, clockwise seen from upwind", peaks)
     page.data("peaks", peaks)
     with run.step("figures"), one_blas_thread():
-        found = figures(run, page, chosen, stage, best if fitted is None else fitted[0], best)
+        models = (best, best if fitted is None else fitted[0])
+        found = figures(run, page, chosen, stage, machine, models)
         if not chosen.own and fitted is not None:
             compare(page, stage, found, turns, (best, fitted, effects), moment)
     answer(page, chosen, effects, together, rows)
@@ -342,7 +343,8 @@ def fitted_by(best: Guess, effects: Sequence[Effect]) -> tuple[Guess, str] | Non
 def show_causes(page: Page, effects: Sequence[Effect], rows: list[Record], own: bool) -> None:
     """Show what each cause does alone, over its range, and the table of causes."""
     page.section("Causes")
-    ends = {e.cause.words: (min(e.alone), max(e.alone)) for e in effects}
+    felt = [e for e in sorted(effects, key=lambda e: -e.swing) if e.swing >= QUIET]
+    ends = {e.cause.words: (min(e.alone), max(e.alone)) for e in felt}
     middle = {words: sum(pair) / 2 for words, pair in ends.items()}
     drawn = bars(HERO, {"alone": middle}, "upwind over downwind", ends={"alone": ends})
     drawn.figure["layout"]["xaxis"]["range"] = [0.7, 1.6]
@@ -352,10 +354,14 @@ def show_causes(page: Page, effects: Sequence[Effect], rows: list[Record], own: 
     )
     page.table("Causes: range, effect, and what is needed", rows)
     page.data("causes", rows)
+    quiet = [e.cause.words for e in effects if e.swing < QUIET]
+    page.text(f"These alone do nothing: {', '.join(quiet)}.")
     page.text(
         "A pin carries twice the tangential force of a mesh; only a shift of that load along the "
         "pin makes its bearings differ. What tilts pin against planet about the radius shifts it; "
-        "what moves all of the pin, or turns with the carrier, does not change the mean of a turn."
+        "what moves all of the pin, or turns with the carrier, does not change the mean of a turn. "
+        "All guesses here are of all pins and bearings at once: errors of single parts scatter, "
+        "and would not load the same side of every planet."
     )
 
 
@@ -391,25 +397,31 @@ def answer(
     low, high = together.ends
     reach = [e for e in effects if not e.cause.model and e.plausible(e.needed)]
     wanted = f"{together.wanted:g}"
-    all_of = f"together they give {together.best:.2f}, at most {together.most:.2f}"
+    both = f"give {together.best:.2f}, at most {together.most:.2f}"
     if reach:
-        verdict = (
-            f"{reach[0].cause.words.capitalize()} can give {wanted} alone; all guesses: {all_of}."
-        )
+        cause = reach[0].cause.words
+        verdict = f"{cause.capitalize()} can give {wanted} alone; all guesses together {both}."
     else:
-        verdict = (
-            f"None of {together.count} guesses alone gives {wanted} within its range; {all_of}"
-        )
+        none = f"None of {together.count} guesses alone gives {wanted} within its range"
+        verdict = f"{none}; together they {both}"
         held = by["overhung"].needed_beside
         verdict += "; pins held at the upwind cheek alone would." if held else "."
     band = max(together.best - low, high - together.best)
     page.found("upwind over downwind, best guess of all", together.best, band)
-    compare = {} if chosen.own else {"beside": together.wanted, "by": "thesis, least"}
+    whose = "asked for" if chosen.own else "thesis, least"
     key = [
-        page.value("upwind over downwind, best guess of all", together.best, band, **compare),
+        page.value(
+            "upwind over downwind, best guess of all",
+            together.best,
+            band,
+            beside=together.wanted,
+            by=whose,
+        ),
         page.value("all guesses at the ends that raise it", together.most),
         page.value("carrier alone, most", max(by["carrier"].alone)),
-        page.value(f"guesses over their ranges that reach {wanted} [%]", 100 * together.share),
+        page.value(
+            f"guesses over their ranges that reach {wanted} [%]", round(100 * together.share, 1)
+        ),
     ]
     held, tilt = by["overhung"].needed_beside, by["pin_tilt"].needed_beside
     if held is not None:
@@ -432,7 +444,7 @@ def answer(
             "Carrier, clearances, fits and tolerances are not public: each range is a guess with "
             "its reason in the table."
         ],
-        **({} if chosen.own else {"claim": "holds in part"}),
+        claim="" if chosen.own else "holds in part",
     )
 
 

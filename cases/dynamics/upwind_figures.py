@@ -275,7 +275,12 @@ def face_places(machine: Machine, values: Floats) -> Floats:
 
 
 def figures(
-    run: Run, page: Page, chosen: ChosenDrivetrain, stage: FirstStage, fitted: Guess, best: Guess
+    run: Run,
+    page: Page,
+    chosen: ChosenDrivetrain,
+    stage: FirstStage,
+    machine: Machine,
+    models: tuple[Guess, Guess],
 ) -> tuple[Figures, Figures]:
     """Compute and show loads over a turn and in operation, of the best guess and as fitted."""
     operation = chosen.drivetrain.operation
@@ -287,15 +292,12 @@ def figures(
     seconds = 60.0 if run.quick else 600.0
     loads = history(operation.rated_power, speed, max(mass, 1e3), radius, seconds)
     count = 6 if run.quick else 36
-    found = (
-        figures_of(stage, best, loads, speed, count),
-        figures_of(stage, fitted, loads, speed, count),
-    )
-    show_figures(page, *found, stage.machine)
+    found, fitted = (figures_of(stage, one, loads, speed, count) for one in models)
+    show_figures(page, found, fitted, machine)
     page.assume(
         "operation",
         "16 m/s, medium turbulence, shear 0.2",
         "",
         "a computed history of the hub; measured ones are not public",
     )
-    return found
+    return found, fitted

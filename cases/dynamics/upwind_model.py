@@ -11,6 +11,7 @@ from types import MappingProxyType
 import numpy as np
 
 from fe_drivetrain.bearing import Bearing, equilibrium, forces
+from fe_drivetrain.cases.dynamics.gear_twist import FaceTwist, with_twist
 from fe_drivetrain.cases.dynamics.upwind_guess import RIM_WALL, Guess, Turned
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.components import GRAVITY
@@ -19,7 +20,6 @@ from fe_drivetrain.drivetrain_file.couplings import SplineData
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics import (
-    FaceTwist,
     Flexible,
     Level,
     Machine,
@@ -34,7 +34,6 @@ from fe_drivetrain.dynamics import (
     planetary_set,
     static,
     static_on_rollers,
-    with_twist,
 )
 from fe_drivetrain.dynamics.bodies.flexible import Housing
 from fe_drivetrain.elasticity.solve.condensation import Condensed

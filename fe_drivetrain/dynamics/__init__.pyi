@@ -52,8 +52,6 @@ from .bodies.gear_pairs import mesh_courses as mesh_courses
 from .bodies.gear_pairs import mesh_stresses as mesh_stresses
 from .bodies.gear_pairs import pitch_contacts as pitch_contacts
 from .bodies.gear_pairs import with_iso_stiffness as with_iso_stiffness
-from .bodies.gear_twist import FaceTwist as FaceTwist
-from .bodies.gear_twist import with_twist as with_twist
 from .bodies.gearbox_mount import gearbox_housing as gearbox_housing
 from .bodies.gearbox_mount import on_mount as on_mount
 from .bodies.gearbox_mount import stated_mount as stated_mount

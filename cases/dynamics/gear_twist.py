@@ -19,8 +19,7 @@ from itertools import pairwise
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics.bodies.bodies import Body
-from fe_drivetrain.dynamics.bodies.springs import Spring
+from fe_drivetrain.dynamics import Body, Spring
 
 _ANGLE = np.eye(6)[0]
 

@@ -5,16 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from fe_drivetrain.cases.dynamics.gear_twist import FaceTwist, with_twist
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.dynamics import (
-    Body,
-    FaceTwist,
-    Place,
-    assemble,
-    gear_mesh,
-    static,
-    with_twist,
-)
+from fe_drivetrain.dynamics import Body, Place, assemble, gear_mesh, static
 from fe_drivetrain.gear.working_angles import Mesh
 
 RIGIDITY, STIFFNESS, WIDTH, RADIUS, TORQUE = 1e7, 2e9, 0.22, 0.1, 5e4
