@@ -11,8 +11,7 @@ import numpy as np
 from fe_drivetrain.bearing import Bearing
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.carrier_in_size import carrier_in_size
-from fe_drivetrain.cases.dynamics.carrier_turn import isotropic
-from fe_drivetrain.cases.dynamics.planets_on_pins import first_stage
+from fe_drivetrain.cases.dynamics.planets_on_pins import first_stage, isotropic
 from fe_drivetrain.cases.dynamics.upwind_carriers import Carriers, carriers_for
 from fe_drivetrain.cases.dynamics.upwind_causes import (
     NONE,
@@ -39,6 +38,7 @@ from fe_drivetrain.drivetrain_file.turning_parts import diagonal
 from fe_drivetrain.dynamics import Machine, azimuths, machine_of, stated_mount
 from fe_drivetrain.dynamics.bodies.catalogue_seats import bearing_of, catalogued
 from fe_drivetrain.report import bars, mark_events, trace
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.suite import ChosenDrivetrain, Page, Record, Run
 from fe_drivetrain.shafts.fidelity.component_frames import carrier_frame
 
@@ -111,7 +111,7 @@ def run(run: Run, page: Page) -> None:
         found = figures(run, page, chosen, stage, machine, models)
         if not chosen.own and fitted is not None:
             compare(page, stage, found, turns, (best, fitted, effects), moment)
-    answer(page, chosen, effects, together, rows)
+    answer(page, chosen, effects, together)
     assumptions(page, machine, causes)
 
 
@@ -386,59 +386,27 @@ def show_together(page: Page, together: Together, carriers: Carriers) -> None:
 
 
 def answer(
-    page: Page,
-    chosen: ChosenDrivetrain,
-    effects: Sequence[Effect],
-    together: Together,
-    rows: Sequence[Record],
+    page: Page, chosen: ChosenDrivetrain, effects: Sequence[Effect], together: Together
 ) -> None:
     """State which causes reach the ratio, and what all guesses give together."""
-    by = {one.cause.field: one for one in effects}
-    low, high = together.ends
-    reach = [e for e in effects if not e.cause.model and e.plausible(e.needed)]
+    reach = [e.cause.words for e in effects if not e.cause.model and e.plausible(e.needed)]
+    held = next(e.needed_beside for e in effects if e.cause.field == "overhung")
     wanted = f"{together.wanted:g}"
     both = f"give {together.best:.2f}, at most {together.most:.2f}"
     if reach:
-        cause = reach[0].cause.words
-        verdict = f"{cause.capitalize()} can give {wanted} alone; all guesses together {both}."
+        words = reach[0].capitalize()
+        verdict = f"{words} can give {wanted} alone; all guesses together {both}."
     else:
         none = f"None of {together.count} guesses alone gives {wanted} within its range"
         verdict = f"{none}; together they {both}"
-        held = by["overhung"].needed_beside
         verdict += "; pins held at the upwind cheek alone would." if held else "."
-    band = max(together.best - low, high - together.best)
-    page.found("upwind over downwind, best guess of all", together.best, band)
-    whose = "asked for" if chosen.own else "thesis, least"
-    key = [
-        page.value(
-            "upwind over downwind, best guess of all",
-            together.best,
-            band,
-            beside=together.wanted,
-            by=whose,
-        ),
-        page.value("all guesses at the ends that raise it", together.most),
-        page.value("carrier alone, most", max(by["carrier"].alone)),
-        page.value(
-            f"guesses over their ranges that reach {wanted} [%]", round(100 * together.share, 1)
-        ),
-    ]
-    held, tilt = by["overhung"].needed_beside, by["pin_tilt"].needed_beside
-    if held is not None:
-        name = "needed: tilt stiffness of pins held at the upwind cheek [MN m/rad]"
-        key.append(page.value(name, 1e-6 / held))
-    if tilt is not None:
-        limit = 1e3 * by["pin_tilt"].cause.high
-        key.append(
-            page.value("needed: tilt of all pins [mrad]", 1e3 * tilt, beside=limit, by="tolerance")
-        )
     what = "makes a planet's upwind bearing carry"
     page.answer(
         f"What {what} more than its downwind one?"
         if chosen.own
         else f"What {what} {MEASURED[0]:g} to {MEASURED[1]:g} times its downwind one's load?",
         verdict,
-        key,
+        key_figures(page, effects, together, "asked for" if chosen.own else "thesis, least"),
         HERO,
         [
             "Carrier, clearances, fits and tolerances are not public: each range is a guess with "
@@ -446,6 +414,33 @@ def answer(
         ],
         claim="" if chosen.own else "holds in part",
     )
+
+
+def key_figures(
+    page: Page, effects: Sequence[Effect], together: Together, whose: str
+) -> list[KeyFigure]:
+    """The best guess, the ends of all guesses, and what is needed."""
+    by = {one.cause.field: one for one in effects}
+    low, high = together.ends
+    band = max(together.best - low, high - together.best)
+    title = "upwind over downwind, best guess of all"
+    page.found(title, together.best, band)
+    reached = f"guesses over their ranges that reach {together.wanted:g} [%]"
+    found = [
+        page.value(title, together.best, band, beside=together.wanted, by=whose),
+        page.value("all guesses at the ends that raise it", together.most),
+        page.value("carrier alone, most", max(by["carrier"].alone)),
+        page.value(reached, round(100 * together.share, 1)),
+    ]
+    held, tilt = by["overhung"].needed_beside, by["pin_tilt"].needed_beside
+    if held is not None:
+        name = "needed: tilt stiffness of pins held at the upwind cheek [MN m/rad]"
+        found.append(page.value(name, 1e-6 / held))
+    if tilt is not None:
+        limit = 1e3 * by["pin_tilt"].cause.high
+        name = "needed: tilt of all pins [mrad]"
+        found.append(page.value(name, 1e3 * tilt, beside=limit, by="tolerance"))
+    return found
 
 
 def assumptions(page: Page, machine: Machine, causes: Sequence[Cause]) -> None:

@@ -111,12 +111,31 @@ def causes_of(
     has_mount : bool
         Whether the file has a mount of the gearbox.
     """
-    teeth = getattr(machine.stages[0], "teeth", None)
-    pitch = (1 - 2.5 / (teeth[-1] if teeth else 21)) ** 4
-    sun, ring = leads(machine)
-    (most, of_moment), soft = moment, 1e-9 * SIZED / torque
-    grade = f"assumed: both gears of ISO 1328-1 grade {GRADE}, errors adding"
     found = [
+        *of_pins(carrier, 1e-9 * SIZED / torque),
+        *of_teeth(machine),
+        *of_gears(machine),
+        *of_bearings(),
+        *of_loads(*moment),
+    ]
+    return [*found, MOUNT] if has_mount else found
+
+
+MOUNT = Cause(
+    "mount",
+    "gearbox on its mount",
+    "times that of the file",
+    1.0,
+    0.3,
+    3.0,
+    "assumed: a third to three times",
+    1.0,
+)
+
+
+def of_pins(carrier: tuple[float, float], soft: float) -> list[Cause]:
+    """Carrier, bushings and bores, by the compliance of a stiff bushing [rad/(N m)]."""
+    return [
         Cause(
             "carrier",
             "carrier winds up between its cheeks",
@@ -156,27 +175,25 @@ def causes_of(
             1e-4,
             "assumed: 0.03 mm between the cheeks",
         ),
-        Cause(
-            "clearance_difference",
-            "downwind bearings looser than upwind ones",
-            "um",
-            1e6,
-            -5e-5,
-            5e-5,
-            "assumed: the width of one class of clearance",
-        ),
+        Cause("pin_place", "first pin out of place", "um", 1e6, 0.0, 5e-5, "assumed tolerance"),
+    ]
+
+
+def of_teeth(machine: Machine) -> list[Cause]:
+    """Helix slopes by the gears' tolerances."""
+    sun, ring = leads(machine)
+    grade = f"assumed: both gears of ISO 1328-1 grade {GRADE}, errors adding"
+    return [
         Cause("sun_lead", "helix slope of sun and planet", "um", 1e6, -sun, sun, grade),
         Cause("ring_lead", "helix slope of planet and ring", "um", 1e6, -ring, ring, grade),
-        Cause(
-            "shift",
-            "bearings off the middle of the faces",
-            "mm",
-            1e3,
-            -5e-3,
-            5e-3,
-            "assumed: half of what faces differ by",
-            far=8.0,
-        ),
+    ]
+
+
+def of_gears(machine: Machine) -> list[Cause]:
+    """Gears that give, and the sun's shaft."""
+    teeth = getattr(machine.stages[0], "teeth", None)
+    pitch = (1 - 2.5 / (teeth[-1] if teeth else 21)) ** 4
+    return [
         Cause(
             "sun_twist",
             "sun winds up along its face",
@@ -219,17 +236,6 @@ def causes_of(
             far=1.0,
         ),
         Cause(
-            "spacing",
-            "distance of the bearings",
-            "times that of the file",
-            1.0,
-            0.75,
-            1.25,
-            "assumed: widths of bearings, and what is between them",
-            1.0,
-            far=1.5,
-        ),
-        Cause(
             "meshes",
             "stiffness of the meshes",
             "times that of the file",
@@ -239,6 +245,42 @@ def causes_of(
             "as printed sources differ",
             1.0,
             far=3.0,
+        ),
+    ]
+
+
+def of_bearings() -> list[Cause]:
+    """Clearances, places and stiffness of the planets' bearings."""
+    return [
+        Cause(
+            "clearance_difference",
+            "downwind bearings looser than upwind ones",
+            "um",
+            1e6,
+            -5e-5,
+            5e-5,
+            "assumed: the width of one class of clearance",
+        ),
+        Cause(
+            "shift",
+            "bearings off the middle of the faces",
+            "mm",
+            1e3,
+            -5e-3,
+            5e-3,
+            "assumed: half of what faces differ by",
+            far=8.0,
+        ),
+        Cause(
+            "spacing",
+            "distance of the bearings",
+            "times that of the file",
+            1.0,
+            0.75,
+            1.25,
+            "assumed: widths of bearings, and what is between them",
+            1.0,
+            far=1.5,
         ),
         Cause(
             "bearings",
@@ -251,7 +293,12 @@ def causes_of(
             1.0,
             far=3.0,
         ),
-        Cause("pin_place", "first pin out of place", "um", 1e6, 0.0, 5e-5, "assumed tolerance"),
+    ]
+
+
+def of_loads(most: float, of_moment: str) -> list[Cause]:
+    """Moments of the rotor up to one [N m], and the slope of the shaft."""
+    return [
         Cause(
             "pitch",
             "pitch moment of the rotor",
@@ -273,21 +320,6 @@ def causes_of(
             far=3.0,
         ),
     ]
-    if has_mount:
-        found.insert(
-            12,
-            Cause(
-                "mount",
-                "gearbox on its mount",
-                "times that of the file",
-                1.0,
-                0.3,
-                3.0,
-                "assumed: a third to three times",
-                1.0,
-            ),
-        )
-    return found
 
 
 def best_of(causes: Sequence[Cause]) -> Guess:
