@@ -13,6 +13,7 @@ from fe_drivetrain.command_line.options import (
     Condensed,
     DrivetrainName,
     Mapping,
+    Matrices,
     Resume,
     Scheduler,
     Skip,
@@ -88,6 +89,7 @@ class GearsRequest:
         ),
     ] = None
     condensed: Condensed = False
+    matrices: Matrices = False
     rollers: Annotated[
         bool,
         typer.Option(
@@ -166,6 +168,7 @@ class GearsRequest:
             level=self.level,
             condensed=self.condensed,
             rollers=self.rollers,
+            matrices=self.matrices,
             tolerance=parse_tolerance(self.tolerance),
             azimuths=self.azimuths,
             slices=self.slices,

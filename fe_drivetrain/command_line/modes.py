@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fe_drivetrain.command_line.names import complete_scene
-from fe_drivetrain.command_line.options import Condensed, with_options
+from fe_drivetrain.command_line.options import Condensed, Matrices, with_options
 from fe_drivetrain.command_line.settings import (
     DrivetrainSettings,
     parse_settings,
@@ -94,6 +94,7 @@ class ModesRequest:
         ),
     ] = "5%"
     condensed: Condensed = False
+    matrices: Matrices = False
     out: Annotated[
         Path | None,
         typer.Option(
@@ -135,6 +136,7 @@ def modes_command(context: typer.Context, asked: ModesRequest) -> int:
             excitations=excitations,
             tolerance=share,
             condensed=asked.condensed,
+            matrices=asked.matrices,
             report=run.report,
         )
 

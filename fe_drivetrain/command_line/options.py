@@ -138,6 +138,14 @@ Condensed = Annotated[
         "bounds, carriers, the main shaft in its meridian. Meshes the housings once.",
     ),
 ]
+Matrices = Annotated[
+    bool,
+    typer.Option(
+        "--matrices",
+        help="A last level has gearbox bearings with a catalogue entry by the 6 x 6 stiffness of "
+        "their rollers, laminae and clearance included, at the rated torque.",
+    ),
+]
 
 
 def with_options(

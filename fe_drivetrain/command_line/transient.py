@@ -65,6 +65,7 @@ def transient_command(context: typer.Context, asked: TransientRequest) -> int:
             loads=asked.loads or (),
             level=asked.level,
             condensed=asked.condensed,
+            matrices=asked.matrices,
             quantity=asked.quantity,  # type: ignore[arg-type]
             tolerance=share,
             duration=asked.duration,

@@ -16,6 +16,7 @@ from fe_drivetrain.command_line.options import (
     Condensed,
     DrivetrainName,
     Mapping,
+    Matrices,
     Resume,
     Scheduler,
     Skip,
@@ -86,6 +87,7 @@ class TransientRequest:
         ),
     ] = None
     condensed: Condensed = False
+    matrices: Matrices = False
     quantity: Annotated[
         str,
         typer.Option(

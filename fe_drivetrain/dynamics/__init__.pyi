@@ -106,6 +106,10 @@ from .bodies.response import frequency_response as frequency_response
 from .bodies.response import mesh_response as mesh_response
 from .bodies.response import modal_response as modal_response
 from .bodies.response import speed_diagram as speed_diagram
+from .bodies.roller_matrices import RollerMatrices as RollerMatrices
+from .bodies.roller_matrices import by_matrices as by_matrices
+from .bodies.roller_matrices import roller_matrices as roller_matrices
+from .bodies.roller_matrices import with_matrices as with_matrices
 from .bodies.roller_seats import OnRollers as OnRollers
 from .bodies.roller_seats import Seat as Seat
 from .bodies.roller_seats import machine_seat as machine_seat

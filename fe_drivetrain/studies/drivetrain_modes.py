@@ -18,11 +18,10 @@ from fe_drivetrain.dynamics import (
     Rungs,
     machine_of,
     machine_system,
-    plain_rungs,
-    rungs_of,
     system_modes,
 )
 from fe_drivetrain.dynamics.bodies.damping_ratios import with_damping_ratios
+from fe_drivetrain.dynamics.bodies.roller_matrices import asked_rungs
 from fe_drivetrain.procedure import Excitation, drivetrain_excitations
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
@@ -81,6 +80,7 @@ def modes(
     excitations: Sequence[Excitation] = (),
     tolerance: float = 0.05,
     condensed: bool = False,
+    matrices: bool = False,
     report: Progress = silent,
 ) -> ModesResult:
     """Compute natural modes of a drivetrain, and which excitations meet them in operation.
@@ -110,6 +110,9 @@ def modes(
         Whether levels are compared with those beyond, too, as far as the file states what they
         need: housings of main bearings at both bounds, carriers, the main shaft in its meridian;
         see `fe_drivetrain.dynamics.rungs_of`. Housings are meshed once.
+    matrices : bool
+        Whether the last level has gearbox bearings with a catalogue entry by the 6 x 6 stiffness of
+        their rollers at rated torque, see `fe_drivetrain.dynamics.with_matrices`.
     report : Progress
         Called with the name of each step as it begins.
 
@@ -125,10 +128,12 @@ def modes(
     found.about(drivetrain)
     machine = machine_of(drivetrain)
     acting = (*drivetrain_excitations(machine.stages, blades, PASSINGS), *excitations)
-    plain = plain_rungs(drivetrain, machine)
+    plain = asked_rungs(drivetrain, machine, matrices=matrices).rungs
     asked = _Asked(plain, named_rung(level, plain, machine), generator == "held", tolerance)
     over = _speeds_of(drivetrain) if speeds is None else speeds
-    rungs = rungs_of(drivetrain, steps=steps) if condensed else None
+    rungs = None
+    if condensed:
+        rungs = asked_rungs(drivetrain, machine, condensed=True, matrices=matrices, steps=steps)
     record = _record(drivetrain, machine, asked, acting, over, speed, steps, rungs)
     assume_housings(found, asked.rung.assumes)
     if rungs is not None:
@@ -149,6 +154,7 @@ def modes(
             excitations=others,
             tolerance=tolerance,
             condensed=condensed,
+            matrices=matrices,
         ),
     )
 

@@ -14,11 +14,13 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.dynamics.bodies.advice import RUNGS, Rung
-from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs, plain_rungs, rungs_of
+from fe_drivetrain.dynamics.bodies.catalogue_seats import main_names
+from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs
 from fe_drivetrain.dynamics.bodies.damping_ratios import first_mode_damping
 from fe_drivetrain.dynamics.bodies.equations import equations_of_motion, spring_laws, steady
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
+from fe_drivetrain.dynamics.bodies.roller_matrices import asked_rungs
 from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.machine_channels import Kind
 from fe_drivetrain.procedure.drivetrain_events import EVENTS, Event, event_of
@@ -30,7 +32,6 @@ from fe_drivetrain.procedure.travelling_planets import (
 )
 from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite.findings import Findings
-from fe_drivetrain.studies.gearbox_bearings import main_names
 from fe_drivetrain.studies.machine_description import housings_in_words
 from fe_drivetrain.studies.mode_levels import WORDS, named_rung
 from fe_drivetrain.studies.part_damage import PartUse
@@ -120,6 +121,7 @@ def transient(
     loads: Files = (),
     level: str | None = None,
     condensed: bool = False,
+    matrices: bool = False,
     quantity: Kind = "bearing",
     tolerance: float = 0.05,
     duration: float | None = None,
@@ -154,6 +156,9 @@ def transient(
     condensed : bool
         Whether levels go on with what has to be condensed, see `fe_drivetrain.dynamics.rungs_of`:
         housings of main bearings at both bounds, carriers, the main shaft in its meridian.
+    matrices : bool
+        Whether the last level has gearbox bearings with a catalogue entry by the 6 x 6 stiffness of
+        their rollers at rated torque, see `fe_drivetrain.dynamics.with_matrices`.
     quantity : str
         For which the level has to be enough: "torque", "mesh", "bearing".
     tolerance : float
@@ -190,10 +195,8 @@ def transient(
     steps, machine = Steps(report), machine_of(drivetrain)
     rated = rated_of(drivetrain, backlash)
     named = None if level is None else WORDS.get(level)
-    if condensed:
-        rungs = rungs_of(drivetrain, steps=steps)
-    else:
-        rungs = Rungs(plain_rungs(drivetrain, machine), {})
+    asking = {"condensed": condensed, "matrices": matrices}
+    rungs = asked_rungs(drivetrain, machine, **asking, steps=steps)
     asked = _Asked(
         drivetrain,
         machine,
@@ -202,7 +205,7 @@ def transient(
         rated,
         rungs,
         level,
-        condensed,
+        asking,
         quantity,
         tolerance,
         duration,
@@ -230,7 +233,7 @@ class _Asked:
     rated: Rated
     rungs: Rungs
     level: str | None
-    condensed: bool
+    asking: dict[str, bool]
     quantity: Kind
     tolerance: float
     duration: float | None
@@ -264,7 +267,7 @@ class _Asked:
             "values": self.values,
             "rated": self.rated.plain(),
             "level": self.level,
-            "condensed": self.condensed,
+            **self.asking,
             "quantity": self.quantity,
             "tolerance": self.tolerance,
             "duration": self.duration,

@@ -16,6 +16,7 @@ from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs, plain_rungs, with_rollers
 from fe_drivetrain.dynamics.bodies.machine import machine_of, rated_torque
+from fe_drivetrain.dynamics.bodies.roller_matrices import with_matrices
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_stresses import Conditions
 from fe_drivetrain.studies.mode_levels import WORDS, named_rung
@@ -124,6 +125,7 @@ def gear_train(
     missing += ["operation.lubricant"] if oil is None else []
     ladder = Rungs(plain_rungs(drivetrain, machine), NOTHING) if condensed is None else condensed
     ladder = with_rollers(ladder, machine) if options.rollers else ladder
+    ladder = with_matrices(ladder, machine, torque) if options.matrices else ladder
     rungs, left_out = ladder.rungs, ladder.left_out
     # the name of a condensed level is known once that is made
     waits = condensed is None and options.condensed and options.level not in WORDS

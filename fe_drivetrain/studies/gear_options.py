@@ -29,6 +29,9 @@ class GearOptions(HistoryOptions):
     rollers : bool
         Whether the last level has bearings with a catalogue entry on their rollers, with their
         clearance: an equilibrium for each azimuth and torque.
+    matrices : bool
+        Whether a level has gearbox bearings with a catalogue entry by the 6 x 6 stiffness of their
+        rollers at the reference torque, see `fe_drivetrain.dynamics.with_matrices`.
     tolerance : float
         Relative difference in contact stress within which a cheaper level is enough.
     azimuths : int
@@ -51,6 +54,7 @@ class GearOptions(HistoryOptions):
     level: str | None = None
     condensed: bool = False
     rollers: bool = False
+    matrices: bool = False
     tolerance: float = 0.05
     azimuths: int = 24
     slices: int = 9

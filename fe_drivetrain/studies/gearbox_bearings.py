@@ -27,6 +27,7 @@ from fe_drivetrain.dynamics.bodies.bearing_reactions import (
     Reactions,
     planet_bearing_name,
 )
+from fe_drivetrain.dynamics.bodies.catalogue_seats import main_names
 from fe_drivetrain.dynamics.bodies.gearbox_mount import stated_mount
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
@@ -186,12 +187,6 @@ def machine_with_bearings(drivetrain: Drivetrain) -> Machine | str | None:
             return str(error)
         raise
     return machine
-
-
-def main_names(machine: Machine) -> tuple[str, ...]:
-    """Names of the bearings of the rotor and of the shaft that it drives."""
-    holds = ("rotor", machine.shafts[0].name)
-    return tuple(bearing.name for bearing in machine.bearings if bearing.holds in holds)
 
 
 def gearbox_oil(

@@ -14,6 +14,7 @@ from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.stage_completion import NotGivenError
 from fe_drivetrain.drivetrain_file.turning_parts import ShaftData, SixOrMatrix, diagonal
 from fe_drivetrain.dynamics.bodies.advice import Rung
+from fe_drivetrain.dynamics.bodies.catalogue_seats import main_names
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system, torsional
 from fe_drivetrain.dynamics.bodies.machine import Machine, derived_values, machine_of
 from fe_drivetrain.dynamics.torsion.gear_table import GRID
@@ -52,13 +53,17 @@ def housings_in_words(rung: Rung, machine: MachineTable) -> str:
     if rung.level is Level.TORSIONAL:
         return "Bodies only turn at the torsional level: neither mount nor housings act there."
     gives = rung.flexible
-    mains = "give way" if gives.bearings else "are rigid and stand on the ground"
+    own = {*main_names(machine)}
+    mains = "give way" if gives.bearings.keys() & own else "are rigid and stand on the ground"
     if not machine.stages:
         return f"Housings of main bearings {mains}."
+    words = " Catalogued bearings are on their rollers." if rung.rollers else ""
+    if gives.bearings.keys() - own:
+        words = " Catalogued bearings of the gearbox have the stiffness of their rollers."
     stands = "on its mount" if gives.housing is not None else "on the ground"
     return (
         f"The gearbox's housing is rigid in itself and stands {stands}; housings of main bearings "
-        f"{mains}.{' Catalogued bearings are on their rollers.' if rung.rollers else ''}"
+        f"{mains}.{words}"
     )
 
 

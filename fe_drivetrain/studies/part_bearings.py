@@ -8,11 +8,11 @@ from fe_drivetrain.bearing_life.life.reference_life import Turning
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics.bodies.bearing_reactions import planet_bearing_name
+from fe_drivetrain.dynamics.bodies.catalogue_seats import main_names
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.studies.gearbox_bearings import (
     catalogue_entries,
     entry_of,
-    main_names,
     require_bearings,
 )
 from fe_drivetrain.studies.life_options import LifeOptions

@@ -17,6 +17,8 @@ from fe_drivetrain.cases.procedure.measurement_cases import fitted
 from fe_drivetrain.cases.procedure.own_three_points import own_three_points
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.drivetrain_file.reading import scene_text
 from fe_drivetrain.dynamics import (
     Level,
     assemble,
@@ -84,6 +86,13 @@ def record(own: Path, known: Known) -> Path:
     }
     write_channels(own.parent / "stop.csv", step, columns)
     return own.parent / "stop.csv"
+
+
+ROLLING = {
+    "gearbox.stages.0.pins.0.catalogue": "planet_nj2232",
+    "gearbox.stages.0.pins.1.catalogue": "planet_nj2232",
+    "gearbox.bearings.8.catalogue": "tapered_pair_32222",
+}
 
 
 def ran(name: str, tmp_path: Path, **settings: object) -> Page:
@@ -187,13 +196,17 @@ def test_planets_of_a_whole_drivetrain_share_an_error_within_the_closed_forms() 
         ("dynamics/carrier_travels", "synthetic_2mw"),
         ("dynamics/elastic_ring", "nrel_750kw"),
         ("dynamics/load_sharing", "synthetic_2mw"),
+        ("dynamics/bearing_matrices", "ROLLING"),
         ("dynamics/planet_bearings", "grc_750kw"),
+        ("dynamics/sun_spline", "synthetic_2mw"),
     ],
 )
 def test_a_case_answers_for_another_whole_drivetrain(
     name: str, drivetrain: str, tmp_path: Path
 ) -> None:
-    page = ran(name, tmp_path, drivetrain=drivetrain)
+    file = tmp_path / "rolling.yaml"
+    file.write_text(scene_text(read_drivetrain("synthetic_2mw", ROLLING)), "utf-8")
+    page = ran(name, tmp_path, drivetrain=str(file) if drivetrain == "ROLLING" else drivetrain)
     assert page.checks
     assert all(check.passed for check in page.checks)
     assert page.answered is not None
@@ -259,11 +272,13 @@ def test_three_points_are_those_of_the_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "drivetrain", "message"),
     [
+        ("dynamics/bearing_matrices", "OWN", r"give gearbox\.bearings or pins a catalogue"),
         ("dynamics/carrier_travels", "OWN", r"give gearbox\.stages\.0\.pins"),
         ("dynamics/elastic_ring", "OWN", "no planetary stage"),
         ("dynamics/load_sharing", "OWN", r"give gearbox\.stages\.0\.pins"),
         ("dynamics/park_time", "OWN", "without teeth|full data of its gears"),
         ("dynamics/planet_bearings", "synthetic_2mw", r"give gearbox\.stages\.0\.pins\.0\.catal"),
+        ("dynamics/sun_spline", "OWN", "no planetary stage with bearings of its planets"),
         ("dynamics/transmission_error", "OWN", "full data of its gears"),
         ("dynamics/upwind_bearing", "OWN", r"give gearbox\.stages\.0\.pins"),
         ("procedure/campaign", "NO_OPERATION", "does not state operation"),

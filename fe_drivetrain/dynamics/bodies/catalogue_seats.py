@@ -43,6 +43,12 @@ def catalogued(machine: MachineTable) -> dict[str, BearingData | PinData]:
     return {name: row for name, row in rows.items() if row.catalogue is not None}
 
 
+def main_names(machine: MachineTable) -> tuple[str, ...]:
+    """Names of the bearings of the rotor and of the shaft that it drives."""
+    holds = ("rotor", machine.shafts[0].name)
+    return tuple(bearing.name for bearing in machine.bearings if bearing.holds in holds)
+
+
 def on_catalogue(
     machine: MachineTable,
     rung: Rung,

@@ -105,7 +105,8 @@ class Flexible:
         from 2 on.
     bearings : Mapping[str, Floats]
         Stiffness (6, 6) of bearings with their housings by name, in place of that of their rows
-        [N/m, N, N m/rad].
+        [N/m, N, N m/rad]; of planets by the names of their springs, as in "stage 1 pin 1 upwind",
+        along and about x, the radius and the tangent.
     apart : frozenset[str]
         Names of bearings that stand on the ground beside a housing, as those of the main shaft and
         of the generator do.

@@ -193,6 +193,7 @@ def _add_stage(
         else azimuth * machine.speeds[number - 1]
     )
     planets, carrier = planetary_set(machine, number, free, turned), gives.carriers.get(number)
+    planets = replace(planets, own=gives.bearings)
     pins: list[Body] = []
     if carrier is not None:
         pins, element, places = carrier_element(carrier, planets, f"{name} carrier")
@@ -261,6 +262,7 @@ def _add_shafts(
 def _add_bearings(machine: MachineTable, gives: Flexible, built: Assembly) -> None:
     """Add the bearings, each between a body and what holds it."""
     known = {bearing.name for bearing in machine.bearings}
+    known |= {spring.name.rpartition(" ")[0] for spring in built.springs if " pin " in spring.name}
     for name in sorted({*gives.bearings, *gives.apart} - known):
         raise InputError(
             f"no bearing {name!r} is in {machine.title!r}: name another, or leave it out"

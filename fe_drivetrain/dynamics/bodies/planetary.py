@@ -5,6 +5,7 @@ angle psi_k about it, from y to z. Every body has up to six degrees of freedom; 
 turns with the carrier, the springs of equal planets do not change in time.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import cos, pi, sin
 
@@ -99,6 +100,9 @@ class PlanetarySet:
         there are none.
     sun_damping, ring_damping : float
         Damping of each mesh along its line of action [N s/m].
+    own : Mapping[str, ArrayLike]
+        Stiffness of single bearings in place of that of their row, by the names of their springs,
+        as in "NAME pin 1 upwind".
     """
 
     name: str
@@ -122,6 +126,7 @@ class PlanetarySet:
     pins: tuple[Place, ...] = ()
     sun_damping: float = 0.0
     ring_damping: float = 0.0
+    own: Mapping[str, ArrayLike] = field(default_factory=dict)
     ratio: float = field(init=False)
 
     def __post_init__(self) -> None:
@@ -330,7 +335,10 @@ def pin_springs(stage: PlanetarySet, k: int, planet: Place, carrier: Place) -> l
     for bearing in stage.bearings:
         at = np.asarray(planet.centre) + along_x(bearing.offset)
         name = stage.full_name(f"pin {k + 1} {bearing.name}".strip())
-        found += bushing(name, planet, carrier, at, bearing.stiffness, bearing.damping, axes)
+        if name in stage.own:
+            found += bushing(name, planet, carrier, at, stage.own[name], 0.0, axes)
+        else:
+            found += bushing(name, planet, carrier, at, bearing.stiffness, bearing.damping, axes)
     return found
 
 
