@@ -44,14 +44,11 @@ class Turned:
     ----------
     radial : Mapping[str, Floats]
         Radial load (a,) of each bearing by the name of its springs [N].
-    wrenches : Mapping[str, Floats]
-        Force and moment (a, 6) of each [N, N m].
     slices : Mapping[str, Floats]
         Forces (a, p, s) of the slices of each mesh [N].
     """
 
     radial: Mapping[str, Floats]
-    wrenches: Mapping[str, Floats]
     slices: Mapping[str, Floats]
 
     __repr__ = short_repr
@@ -109,34 +106,41 @@ def turned(
     meshes = mesh_springs(machine)
     pressing = [spring for springs in meshes.values() for spring in springs]
     radial: dict[str, list[float]] = {name: [] for name in names}
-    wrenches: dict[str, list[Floats]] = {name: [] for name in names}
     slices: dict[str, list[Floats]] = {name: [] for name in meshes}
     for azimuth in angles.tolist():
-        if rollers:
-            found = on_catalogue(
-                machine, rung, operation, in_gearbox(machine), azimuth=azimuth, pressing=pressing
-            )
-            if not found.converged:
-                raise InputError(
-                    f"{machine.title!r}: rollers find no equilibrium at {azimuth:.3g} rad: a "
-                    "clearance leaves a part loose; give less clearance"
-                )
-            source: OnRollers | Static = found
-            state = found.static
-        else:
-            source = state = at_rest(machine, rung, operation, azimuth, pressing)
+        asked = machine, rung, operation, azimuth, pressing
+        source: OnRollers | Static = on_rollers(*asked) if rollers else at_rest(*asked)
+        state = source.static if isinstance(source, OnRollers) else source
         for name in names:
             radial[name].append(source.radial(name))
-            wrenches[name].append(source.wrench(name))
         known = state.system.spring_names
         for mesh, springs in meshes.items():
             places = [springs_named(known, one) for one in springs]
             slices[mesh].append(state.forces[np.array(places)])
     return Turned(
         {name: np.array(found) for name, found in radial.items()},
-        {name: np.array(found) for name, found in wrenches.items()},
         {name: np.array(found) for name, found in slices.items()},
     )
+
+
+def on_rollers(
+    machine: Machine, rung: Rung, operation: Operation, azimuth: float, pressing: Sequence[str]
+) -> OnRollers:
+    """Equilibrium with catalogued bearings of the gearbox on their rollers.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    names = in_gearbox(machine)
+    found = on_catalogue(machine, rung, operation, names, azimuth=azimuth, pressing=pressing)
+    if not found.converged:
+        raise InputError(
+            f"{machine.title!r}: rollers find no equilibrium at {azimuth:.3g} rad: a clearance "
+            "leaves a part loose; give less clearance"
+        )
+    return found
 
 
 def at_rest(

@@ -21,7 +21,8 @@ from fe_drivetrain.dynamics import (
     static,
     steady_load,
 )
-from fe_drivetrain.gear import LoadedSpline, Spline, loaded_spline
+from fe_drivetrain.dynamics.bodies.spline_loads import SplineLoad, spline_motion
+from fe_drivetrain.gear import Spline, loaded_spline
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.answer import Claim
 from fe_drivetrain.report.number_text import value_text
@@ -45,19 +46,15 @@ class Sun:
 
     Attributes
     ----------
-    motion : Floats
-        Shift along y and z and tilt about them (a, 4) of what is behind the spline against what is
-        before it [m, rad]; zeros without a spline.
-    torque : float
-        Torque of the spline, its size [N m].
+    load : SplineLoad or None
+        Loads of the spline; none without one.
     moved : Floats
         Shift (a, 2) of the sun against its ring [m].
     sharing, misplaced : float
         K_gamma over the turn, and with the first pin out of place.
     """
 
-    motion: Floats
-    torque: float
+    load: SplineLoad | None
     moved: Floats
     sharing: float
     misplaced: float
@@ -96,10 +93,11 @@ def run(run: Run, page: Page) -> None:
                 of = with_spline(machine, number, given)
                 found[load, name] = over_turn(of, number, rungs[-1], operation, angles)
     spline = data.spline
-    loaded = {load: worst(spline, found[load, SPLINE]) for load in (CALM, TILTED)}
+    splines = {load: on_spline(found, load) for load in (CALM, TILTED)}
     check(page, spline, machine, number, found, torque)
-    show(page, spline, found, loaded)
-    answer(page, spline, found, loaded, chosen.own, machine.shafts[number].spline is not None)
+    show(page, spline, found, splines)
+    stated = machine.shafts[number].spline is not None
+    answer(page, found, splines, chosen.own, stated)
     page.assume_all(machine.assumptions())
 
 
@@ -151,7 +149,7 @@ def over_turn(
     stage, shaft = machine.stages[number - 1], machine.shafts[number]
     assert isinstance(stage, PlanetaryData)
     pins = [f"stage {number} pin 1 {pin.name}".strip() for pin in stage.pins]
-    motion, moved, each, torques = [], [], [], [0.0]
+    motions, moved, each = [], [], []
     for azimuth in angles.tolist():
         parts = assembly(machine, rung.level, azimuth, held_generator=True, flexible=rung.flexible)
         system = assemble(parts.bodies, parts.springs, parts.superelements)
@@ -167,29 +165,22 @@ def over_turn(
             for one in (state, static(system, load, gaps))
         ]
         each.append(forces)
-        if shaft.spline is None:
-            motion.append(np.zeros(4))
-            continue
-        k = np.array(shaft.spline.bushing)
-        wrench = state.wrench(f"{shaft.name} spline")
-        torques.append(abs(float(wrench[3])))
-        axes = [1, 2, 4, 5]
-        motion.append(np.divide(wrench[axes], k[axes], out=np.zeros(4), where=k[axes] > 0.0))
+        if shaft.spline is not None:
+            motions.append(spline_motion(state, shaft.name, shaft.spline))
+    spline = None
+    if shaft.spline is not None:
+        sizes, motion = zip(*motions, strict=True)
+        spline = SplineLoad(shaft.spline, max(sizes), np.array(motion))
     loads = np.array(each)
     sharing = (loads.max(axis=2) / loads.mean(axis=2)).max(axis=0)
-    return Sun(np.array(motion), max(torques), np.array(moved), *map(float, sharing))
+    return Sun(spline, np.array(moved), *map(float, sharing))
 
 
-def used(spline: Spline, sun: Sun) -> float:
-    """Share of the teeth's indentation that shift and tilt use up at an edge: 1 where one lifts."""
-    out = np.hypot(*sun.motion[:, :2].T) + spline.edge * np.hypot(*sun.motion[:, 2:].T)
-    return float(out.max()) / spline.indentation(sun.torque)
-
-
-def worst(spline: Spline, sun: Sun) -> LoadedSpline:
-    """Loads of the teeth at the azimuth at which a slice carries most."""
-    each = [loaded_spline(spline, sun.torque, motion) for motion in sun.motion]
-    return max(each, key=lambda one: one.peak_over_mean)
+def on_spline(found: Mapping[tuple[str, str], Sun], load: str) -> SplineLoad:
+    """Loads of the spline of all its slices."""
+    one = found[load, SPLINE].load
+    assert one is not None
+    return one
 
 
 def check(
@@ -201,7 +192,7 @@ def check(
     torque: float,
 ) -> None:
     """The limit by hand, and the torque of the spline by statics."""
-    sun = found[CALM, SPLINE]
+    sun = on_spline(found, CALM)
     edge = (0.0, 0.0, 0.0, spline.capacity(sun.torque))
     at_limit = loaded_spline(spline, sun.torque, edge if spline.edge else (0.0,) * 4)
     page.equals(
@@ -227,26 +218,27 @@ def show(
     page: Page,
     spline: Spline,
     found: Mapping[tuple[str, str], Sun],
-    loaded: Mapping[str, LoadedSpline],
+    splines: Mapping[str, SplineLoad],
 ) -> None:
     """Loads over the width, models side by side, slices, and the thesis's statements."""
     page.section("Teeth out of line")
-    torque = found[CALM, SPLINE].torque
+    torque = splines[CALM].torque
     x = 1e3 * spline.length * ((np.arange(spline.slices) + 0.5) / spline.slices - 0.5)
     lines = []
     limit = spline.capacity(torque) if spline.edge else 0.0
     for share in (0.0, 0.5, 1.0, 2.0):
         of = loaded_spline(spline, torque, (0.0, 0.0, 0.0, share * limit))
         lines.append(trace(f"{share:g} of the limit", x, of.forces[:, 0] / of.forces.mean()))
-    for load, of in loaded.items():
+    for load, one in splines.items():
+        of = one.worst
         tooth = int(of.forces.max(axis=0).argmax())
         lines.append(trace(f"at {load}", x, of.forces[:, tooth] / of.forces.mean()))
     page.chart(HERO, lines, "x from the middle of the width [mm]", "load over the mean of all")
     page.table("Tilt stiffness by the number of slices", slice_rows(spline))
     page.section("What floating does")
-    page.table("Sun and planets over a turn", model_rows(spline, found))
+    page.table("Sun and planets over a turn", model_rows(found))
     page.section("What the thesis says")
-    page.table("Printed, ours, verdict", statements(spline, found, loaded))
+    page.table("Printed, ours, verdict", statements(found, splines))
 
 
 def slice_rows(spline: Spline) -> list[Record]:
@@ -266,18 +258,18 @@ def slice_rows(spline: Spline) -> list[Record]:
     return rows
 
 
-def model_rows(spline: Spline, found: Mapping[tuple[str, str], Sun]) -> list[Record]:
+def model_rows(found: Mapping[tuple[str, str], Sun]) -> list[Record]:
     """One row for each load and model."""
     return [
         {
             "load": load,
             "model": model,
             "shift of the sun in its ring [um]": 1e6 * sun.furthest,
-            "shift of the spline [um]": 1e6 * float(np.hypot(*sun.motion[:, :2].T).max()),
+            "shift of the spline [um]": None if sun.load is None else 1e6 * sun.load.shift,
             "tilt of the spline [urad]": None
-            if model == JOINT
-            else 1e6 * float(np.hypot(*sun.motion[:, 2:].T).max()),
-            "share of the limit": used(spline, sun) if model == SPLINE else None,
+            if sun.load is None or model == JOINT
+            else 1e6 * sun.load.tilt,
+            "share of the limit": sun.load.used if sun.load and model == SPLINE else None,
             "K_gamma": sun.sharing,
             "K_gamma, a pin 50 um out of place": sun.misplaced,
         }
@@ -286,15 +278,14 @@ def model_rows(spline: Spline, found: Mapping[tuple[str, str], Sun]) -> list[Rec
 
 
 def statements(
-    spline: Spline,
     found: Mapping[tuple[str, str], Sun],
-    loaded: Mapping[str, LoadedSpline],
+    splines: Mapping[str, SplineLoad],
 ) -> list[Record]:
     """The thesis's statements about the spline, each with a verdict."""
     stiff, free = found[CALM, SHAFT], found[CALM, JOINT]
     shifts = [1e6 * found[load, JOINT].furthest for load in (CALM, TILTED)]
     left = 1.0 / 35**2
-    peaks = [one.peak_over_mean for one in loaded.values()]
+    peaks = [one.worst.peak_over_mean for one in splines.values()]
     return [
         {
             "statement": "displacements of the sun are small, around 0.1 mm",
@@ -328,15 +319,13 @@ def near(shifts: list[float]) -> bool:
 
 def answer(
     page: Page,
-    spline: Spline,
     found: Mapping[tuple[str, str], Sun],
-    loaded: Mapping[str, LoadedSpline],
+    splines: Mapping[str, SplineLoad],
     own: bool,
     stated: bool,
 ) -> None:
     """State how near teeth are to lifting, and what floating does to the planets."""
-    share = {load: used(spline, found[load, SPLINE]) for load in (CALM, TILTED)}
-    most = max(share.values())
+    most = max(one.used for one in splines.values())
     stiff, on, free = (found[CALM, model] for model in (SHAFT, SPLINE, JOINT))
     helps = free.misplaced < stiff.misplaced
     shifts = [1e6 * found[load, JOINT].furthest for load in (CALM, TILTED)]
@@ -355,7 +344,7 @@ def answer(
             page.value("largest share of that limit [%]", 100 * most, at_most=100.0),
             page.value(
                 "peak over mean of the teeth's loads",
-                max(x.peak_over_mean for x in loaded.values()),
+                max(x.worst.peak_over_mean for x in splines.values()),
             ),
             page.value(
                 "K_gamma, pin 50 um out of place, on a joint",

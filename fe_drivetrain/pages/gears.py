@@ -277,3 +277,5 @@ def _geometry(page: Page, result: GearsResult) -> None:
     columns = list(rows[0])
     page.table("Geometry, and forces at the reference torque", rows, columns[:6])
     page.table("Load factors of the rating", rows, [columns[0], *columns[6:]])
+    if "splines" in result.tables:
+        page.table("Splines at the reference torque, over a turn", result.tables["splines"])

@@ -23,6 +23,7 @@ from fe_drivetrain.studies.gear_spectra import TorqueSpectrum
 from fe_drivetrain.studies.gear_stresses import MeshStresses
 from fe_drivetrain.studies.rated_gears import GearRating
 from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.spline_findings import state_splines
 from fe_drivetrain.turbine_loads.histories.sites import Site
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
 
@@ -159,6 +160,7 @@ def gears(
     if given.alone:
         found.note(TORQUE_ALONE, first=True)
     state_findings(found, train, left_out, result)
+    state_splines(found, train, given.hub, given.weight)
     stated = _plain(asked, loading, torque)
     return GearsResult(**result, **found.frozen(steps.times, **stated))
 

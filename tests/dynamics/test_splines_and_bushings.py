@@ -15,6 +15,8 @@ from fe_drivetrain.dynamics.bodies.torsional_table import gear_table
 from fe_drivetrain.dynamics.torsion.gear_table import gear_masses
 from fe_drivetrain.dynamics.torsion.system import natural_modes
 from fe_drivetrain.export.turning_lines import Link, turning_lines
+from fe_drivetrain.studies.gear_options import GearOptions
+from fe_drivetrain.studies.gear_ratings import gears
 
 SPLINE = {"teeth": 32, "diameter": 0.2, "length": 0.11, "at": 0.3}
 BUSHING = [1e9, 2e9, 3e9, 1e8, 2e8, 3e8]
@@ -136,3 +138,21 @@ def test_a_spline_is_a_link_between_two_nodes_of_its_line() -> None:
 def test_mistakes_are_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         machine_of(read_drivetrain("grc_750kw", changes))
+
+
+def test_gears_name_a_spline_whose_teeth_lift() -> None:
+    options = GearOptions(level="rigid", azimuths=4, slices=3)
+    stiff = gears(
+        read_drivetrain("grc_750kw", spline(stiffness=1e13, length=0.03)), options=options
+    )
+    (row,) = stiff.tables["splines"]
+    assert row["share of that limit"] > 1.0
+    assert row["teeth in contact [%]"] < 100.0
+    assert any("teeth lift" in note for note in stiff.notes)
+    calm = gears(read_drivetrain("grc_750kw", spline()), options=options)
+    (row,) = calm.tables["splines"]
+    assert row["torque [kN m]"] == pytest.approx(324.114 * 21 / 120, rel=1e-4)
+    assert row["share of that limit"] == pytest.approx(
+        row["peak over mean of the teeth"] - 1.0, rel=0.05
+    )
+    assert not any("teeth lift" in note for note in calm.notes)
