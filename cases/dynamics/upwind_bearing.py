@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import cos
+from math import cos, sqrt
 
 import numpy as np
 
@@ -149,6 +149,12 @@ class Together:
     def share(self) -> float:
         """Share of the ratios that reach what is asked for."""
         return float((self.ratios >= self.wanted).mean())
+
+    @property
+    def share_band(self) -> float:
+        """Half width of its 95 % interval; of none or all by the rule of three."""
+        share, count = self.share, len(self.ratios)
+        return max(1.96 * sqrt(share * (1.0 - share) / count), 3.0 / count)
 
 
 def stage_of(chosen: ChosenDrivetrain, machine: Machine) -> FirstStage:
@@ -430,7 +436,7 @@ def key_figures(
         page.value(title, together.best, band, beside=together.wanted, by=whose),
         page.value("all guesses at the ends that raise it", together.most),
         page.value("carrier alone, most", max(by["carrier"].alone)),
-        page.value(reached, round(100 * together.share, 1)),
+        page.value(reached, 100 * together.share, 100 * together.share_band),
     ]
     held, tilt = by["overhung"].needed_beside, by["pin_tilt"].needed_beside
     if held is not None:
