@@ -5,11 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.planets_on_pins import TURNS, first_stage
+from fe_drivetrain.cases.dynamics.planets_on_pins import TURNS, first_stage, isotropic
 from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import CarrierComponent, library_component, read_drivetrain
-from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
-from fe_drivetrain.drivetrain_file.turning_parts import diagonal
 from fe_drivetrain.dynamics import (
     Flexible,
     Level,
@@ -103,8 +101,8 @@ def answer(page: Page, rows: list[Record], ratios: list[float], uneven: float) -
         ],
         RATIOS,
         [
-            "The thesis's ratios are of a softer carrier and bearings with clearance, whose data "
-            "are not public."
+            "What would give the thesis's ratios is tested cause by cause in "
+            "dynamics/upwind_bearing."
         ],
         claim="holds" if reached else "does not hold",
     )
@@ -113,15 +111,6 @@ def answer(page: Page, rows: list[Record], ratios: list[float], uneven: float) -
         "by gravity, by moments of the hub, and, with torque alone, since the gears of the next "
         "stage push the sun's shaft to one side.",
     )
-
-
-def isotropic(stage: PlanetaryData, machine: Machine) -> bool:
-    """Whether all bearings are as stiff in both radial directions, and see gravity once a turn."""
-    held = [
-        *(bearing.stiffness for bearing in machine.bearings),
-        *(p.stiffness for p in stage.pins),
-    ]
-    return all(len(set(diagonal(one)[1:3])) == 1 for one in held)
 
 
 def own(run: Run, page: Page, chosen: ChosenDrivetrain, count: int) -> None:

@@ -2,6 +2,7 @@
 
 from fe_drivetrain.common import InputError
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.drivetrain_file.turning_parts import diagonal
 from fe_drivetrain.dynamics import Machine
 
 TURNS = ("torque and gravity", "tilt at the hub, too")
@@ -23,3 +24,12 @@ def first_stage(machine: Machine) -> tuple[PlanetaryData, list[str]]:
             "gearbox.stages.0.pins"
         )
     return stage, [pin.name for pin in stage.pins]
+
+
+def isotropic(stage: PlanetaryData, machine: Machine) -> bool:
+    """Whether all bearings are as stiff in both radial directions, and see gravity once a turn."""
+    held = [
+        *(bearing.stiffness for bearing in machine.bearings),
+        *(p.stiffness for p in stage.pins),
+    ]
+    return all(len(set(diagonal(one)[1:3])) == 1 for one in held)

@@ -280,6 +280,8 @@ def test_three_points_are_those_of_the_file(tmp_path: Path) -> None:
         ("dynamics/planet_bearings", "synthetic_2mw", r"give gearbox\.stages\.0\.pins\.0\.catal"),
         ("dynamics/sun_spline", "OWN", "no planetary stage with bearings of its planets"),
         ("dynamics/transmission_error", "OWN", "full data of its gears"),
+        ("dynamics/upwind_bearing", "OWN", r"give gearbox\.stages\.0\.pins"),
+        ("dynamics/upwind_bearing", "park_2021", "which shares with none"),
         ("procedure/campaign", "NO_OPERATION", "does not state operation"),
         ("procedure/gaps", "NO_OPERATION", r"does not state operation\.rotor_speed"),
         ("procedure/interfaces", "OWN", r"give shaft\.sections and bearing_units"),
