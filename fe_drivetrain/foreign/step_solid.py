@@ -22,15 +22,15 @@ from fe_drivetrain.foreign.iges_lines import refuse_damaged
 from fe_drivetrain.foreign.step_fit import area_and_middle, on_edges, recognised
 from fe_drivetrain.foreign.step_heal import counted, free_edges, heal, reason, sewn
 from fe_drivetrain.foreign.step_solids import MAX_SOLIDS, glue, keep, outside, solids
+from fe_drivetrain.foreign.step_text import refuse_damaged_step
 from fe_drivetrain.foreign.telling import tell
 
 _MAX_FACES = 20_000
 _MIN_VOLUME = 1e-9  # of the cube of its size
-_FARTHEST = 1e9  # any number of a place, in the file's unit
 _TORN = 0.01  # of its radius: edges that are farther from a cylinder or sphere are not its own
 _ALIGNED = 1e-6  # sine of the angle between directions that are the same
 _FORMATS = {".igs": "IGES", ".iges": "IGES", ".brep": "BREP"}
-_CHECKS = {"IGES": refuse_damaged, "BREP": refuse_cut_off}
+_CHECKS = {"IGES": refuse_damaged, "BREP": refuse_cut_off, "STEP": refuse_damaged_step}
 SAME = 1e-6  # of a solid's size: places that are the same
 _SURFACES = {  # as STEP and gmsh call them
     "PLANE": "Plane",
@@ -76,7 +76,7 @@ def _opened(
     name = Path(path).name
     for option in ("FixDegenerated", "FixSmallEdges", "FixSmallFaces", "SewFaces", "MakeSolids"):
         gmsh.option.setNumber(f"Geometry.OCC{option}", 0)
-    _refuse_odd_numbers(path)
+    _refuse_damaged(path)
     gmsh.option.setNumber("Geometry.OCCAutoFix", 0)
     gmsh.option.setNumber("Geometry.OCCImportLabels", 1)
     tell(f"reading {Path(path).stat().st_size / 1e6:.3g} MB")
@@ -214,24 +214,9 @@ def _refuse_many_faces(name: str, faces: int) -> None:
         )
 
 
-def _refuse_odd_numbers(path: str) -> None:
-    """Refuse places that are no numbers or far away: the reader of STEP files hangs on them."""
-    if check := _CHECKS.get(_FORMATS.get(Path(path).suffix.lower(), "")):
-        check(path)
-        return
-    text = Path(path).read_text("latin-1")
-    for number, values in re.findall(
-        r"#(\d+)\s*=\s*(?:CARTESIAN_POINT|DIRECTION)\s*\(\s*'[^']*'\s*,\s*\(([^()]*)\)", text
-    ):
-        try:
-            sound = all(abs(float(value)) <= _FARTHEST for value in values.split(","))
-        except ValueError:
-            sound = False
-        if not sound:
-            raise InputError(
-                f"{Path(path).name}: its entity #{number} is at ({' '.join(values.split())[:80]}), "
-                f"but must have numbers of at most {_FARTHEST:g}: export it again, whole"
-            )
+def _refuse_damaged(path: str) -> None:
+    """Refuse a file whose text is damaged: readers hang on it, or leave a part of it out."""
+    _CHECKS[_FORMATS.get(Path(path).suffix.lower(), "STEP")](path)
 
 
 def _box() -> list[float]:

@@ -11,6 +11,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.foreign.mesh_file import read
 from fe_drivetrain.foreign.reading import Limits, read_in_process
 from fe_drivetrain.foreign.step_solid import opened
+from fe_drivetrain.foreign.step_text import refuse_damaged_step
 from fe_drivetrain.foreign.survey import surveyed
 from fe_drivetrain.geometry import gmsh_session
 from fe_drivetrain.geometry.step_files import write_step
@@ -167,3 +168,30 @@ def test_huge_counts_and_labels_end_in_a_sentence_and_status_2(name, tmp_path, i
     assert status == 2, out
     assert name in error
     assert "Traceback" not in error
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("));", ";", r"#\d+ is not whole"),
+        (" = PLANE(", " PLANE(", "what follows #\\d+ is not whole"),
+        ("#1 =", "\n#1 = PLANE('');#1 ;", "not whole"),
+    ],
+)
+def test_a_step_file_with_an_entity_that_is_not_whole_is_refused_by_its_number(
+    tmp_path, old, new, words
+):
+    path = tmp_path / "block.step"
+    with gmsh_session():
+        write_step(path, [gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)])
+    refuse_damaged_step(str(path))
+    head, data = path.read_text().split("DATA;")
+    path.write_text(f"{head}DATA;{data.replace(old, new, 1)}")
+    with pytest.raises(InputError, match=words):
+        refuse_damaged_step(str(path))
+
+
+def test_strings_and_comments_of_a_step_file_may_hold_anything(tmp_path):
+    path = tmp_path / "words.step"
+    path.write_text("DATA;\n#1=NAME('a;b(''c', #2);/* ( ; */\n#2=(A(1.)B());\nENDSEC;\n")
+    refuse_damaged_step(str(path))
