@@ -51,6 +51,13 @@ OVER = 10.0  # Hz
 SHOWN = "Torque of the shafts in a steady wind of {:g} m/s, both stages"
 LOW, HIGH = "main shaft", "high-speed shaft"
 FINE = 1e-3  # s, of transients
+ENOUGH: Mapping[tuple[str, ...], str] = {
+    (): "neither shaft",
+    (LOW,): "the main shaft, not the high-speed shaft",
+    (HIGH,): "the high-speed shaft, not the main shaft",
+    (LOW, HIGH): "both shafts",
+}
+"""What stage 1 is enough for, in words, by the shafts."""
 
 
 @dataclass(frozen=True)
@@ -398,12 +405,7 @@ def answer(
     )
     enough = [shaft for shaft, far in ((LOW, low), (HIGH, high)) if far < SIGNIFICANT]
     hold = sum(row["verdict"] == "holds" for row in rows)
-    words = {
-        (): "neither shaft",
-        (LOW,): "the main shaft, not the high-speed shaft",
-        (HIGH,): "the high-speed shaft, not the main shaft",
-        (LOW, HIGH): "both shafts",
-    }[tuple(enough)]
+    words = ENOUGH[tuple(enough)]
     page.answer(
         "Is the simplest model of the drivetrain enough for torques in operation?",
         f"Stage 1 is enough for {words}: damage-equivalent torques differ by "
