@@ -45,6 +45,7 @@ from fe_drivetrain.dynamics import (
     wind_up,
 )
 from fe_drivetrain.report import error_bars, trace
+from fe_drivetrain.report.answer import Claim
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 LEAST, LARGEST = "least force of a mesh over the static one", "largest force over the static one"
@@ -316,12 +317,21 @@ def show_waves(page: Page, space: System, dt: float) -> None:
 def answer(page: Page, found: dict[str, Effect], band: float, bounded: bool, strong: float) -> None:
     """State how much the angle changes, with its scatter, and whether it is needed."""
     step, calm = found["torque step"], found["steady operation"]
-    needed = abs(step.change) - step.scatter - band > step.of_phase
+    apart, unsure = abs(step.change), step.scatter + band
+    claim: Claim = ""
+    if apart - unsure > step.of_phase:
+        claim = "holds"
+    elif apart + unsure <= step.of_phase:
+        claim = "does not hold"
+    words = {
+        "": "too uncertain to tell.",
+        "holds": "needed for steps.",
+        "does not hold": "that it is imperative does not hold.",
+    }
     page.answer(
         "Must the mesh stiffness follow the angle of the gears rather than the time?",
-        f"By angle the least mesh force after a torque step moves by {step.change:.2f} ± "
-        f"{step.scatter + band:.2f} of static, in steady operation by {calm.change:.2f}: "
-        + ("needed for steps." if needed else "by phase as much."),
+        f"By angle a torque step's least mesh force moves by {step.change:.2f} ± {unsure:.2f} of "
+        f"static, a steady one's by {calm.change:.2f}: " + words[claim],
         [
             page.value(
                 f"torque step: change of the least force by angle, {len(step.by_time)} phases",
@@ -350,7 +360,7 @@ def answer(page: Page, found: dict[str, Effect], band: float, bounded: bool, str
             "Angles are those of the carrier and of the gear that drives each stage; contact "
             "ratios, phases and damping are assumed.",
         ],
-        claim="holds" if needed else "does not hold",
+        claim=claim,
     )
     page.say(
         "Park et al. 2021 call it imperative, since the increments of Newmark's method do not fit "

@@ -65,7 +65,7 @@ def run(run: Run, page: Page) -> None:
     """Each cause over its range, the value that is needed, all of them at once, the figures."""
     chosen = run.drivetrain(NAME)
     chosen.state(page)
-    wanted = run.positive("ratio") if "ratio" in run.settings else MEASURED[0]
+    wanted = run.positive("ratio", MEASURED[0])
     if wanted <= 1.0:
         raise InputError(f"ratio = {wanted:g} must be above 1, where both bearings are equal")
     machine = machine_of(chosen.drivetrain)
