@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache as once
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ import numpy as np
 
 from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.provenance import file_digest, machine, source_hash, versions
-from fe_drivetrain.foreign.reading import Arrays, read_in_process
+from fe_drivetrain.foreign.reading import LIMITS, Arrays, Limits, read_in_process
 
 
 def read_step(action: str, path: str | Path, request: Mapping[str, Any]) -> Arrays:
@@ -49,11 +50,18 @@ def read_step(action: str, path: str | Path, request: Mapping[str, Any]) -> Arra
     cache = user_cache()
     kept = cache.load("figures", content)
     known = {} if kept is None else {"healed": json.loads(str(kept["healed"]))}
-    found = read_in_process(action, path, {**request, **known})
+    limits = _to_look(path) if action == "look" else LIMITS
+    found = read_in_process(action, path, {**request, **known}, limits)
     if kept is None:
         healed = json.loads(str(found["survey"]))["healed"]
         cache.keep("figures", content, {"healed": np.array(json.dumps(healed))})
     return found
+
+
+def _to_look(path: str | Path) -> Limits:
+    """Limits on looking at a file: a sound one takes some twenty seconds a megabyte at most."""
+    megabytes = Path(path).stat().st_size / 1e6 if Path(path).is_file() else 0.0
+    return replace(LIMITS, seconds=min(LIMITS.seconds, round(120 * (1 + megabytes))))
 
 
 @once

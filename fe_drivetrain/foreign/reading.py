@@ -56,6 +56,7 @@ class Limits:
 LIMITS = Limits()
 
 _LOOK = 0.2  # seconds between looks at how far the process is
+_TOO_LATE = -1000  # in place of the exit status of a process that waits for long
 
 
 def read_in_process(
@@ -129,7 +130,7 @@ def _watched(process: subprocess.Popen[bytes], told: Path, seconds: float) -> in
             if process.returncode is not None:
                 return process.returncode
             if time.monotonic() > end:
-                return -int(getattr(signal, "SIGXCPU", 24))
+                return _TOO_LATE
     finally:
         if process.poll() is None:
             process.kill()
@@ -162,6 +163,8 @@ def _check_file(file: Path, limits: Limits) -> None:
 def _ended(file: Path, status: int, limits: Limits) -> str:
     if status in (-getattr(signal, "SIGXCPU", 24), -getattr(signal, "SIGKILL", 9)):
         what = f"takes more than {limits.seconds} s of processor time"
+    elif status == _TOO_LATE:
+        what = f"takes more than {2 * limits.seconds} s"
     elif status == -getattr(signal, "SIGPROF", 27):
         what = "makes its reader go on without end, for it is damaged or cut off"
     elif status == 3:
