@@ -111,7 +111,8 @@ class TransientRequest:
         typer.Option(
             "--step",
             metavar="SECONDS",
-            help="Step of integration. Default: what the event needs; 0.005 of histories.",
+            help="Step of integration. Default: what the event needs; of histories 0.005, or what "
+            "is between samples where that is less.",
         ),
     ] = None
     backlash: Annotated[

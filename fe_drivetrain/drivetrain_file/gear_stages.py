@@ -30,6 +30,7 @@ from fe_drivetrain.drivetrain_file.stage_fields import (
 from fe_drivetrain.drivetrain_file.turning_parts import (
     MAX_GEAR,
     MAX_STIFFNESS,
+    AllHeld,
     CarrierBody,
     PinData,
     Radius,
@@ -256,7 +257,7 @@ class PlanetaryStage(GearStage):
     sun_planet_damping: float = stage_fields.mesh_damping()
     ring_planet_damping: float = stage_fields.mesh_damping()
     pins: tuple[PinData, ...] = Field(default=(), description="bearings of each planet")
-    bushing: Six | None = Field(
+    bushing: AllHeld | None = Field(
         default=None,
         description="stiffness of each pin's seat in the carrier: axial, radial, tangential, and "
         "about them, N/m, N m/rad; rigid where left out",

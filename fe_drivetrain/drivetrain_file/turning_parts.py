@@ -36,6 +36,9 @@ Stiffness = Annotated[float, Field(ge=0, le=MAX_STIFFNESS)]
 Speed = Annotated[float, Field(gt=0, le=100)]
 Six = tuple[Stiffness, Stiffness, Stiffness, Stiffness, Stiffness, Stiffness]
 """Along and about three axes [N/m, N m/rad]."""
+Held = Annotated[float, Field(gt=0, le=MAX_STIFFNESS)]
+AllHeld = tuple[Held, Held, Held, Held, Held, Held]
+"""Along and about three axes, none of them free [N/m, N m/rad]."""
 Number = Annotated[float, Field(ge=-MAX_STIFFNESS, le=MAX_STIFFNESS)]
 Row = tuple[Number, Number, Number, Number, Number, Number]
 #: Difference of a matrix from a symmetric one, and its least eigenvalue, that are round-off.
@@ -255,6 +258,11 @@ class ShaftRow(Part):
             raise InputError(
                 f"{name} has its spline at {self.spline.at:g} m but is {length:g} m long: lower "
                 "spline.at"
+            )
+        if length is not None and self.spline.length > length:
+            raise InputError(
+                f"{name} has a spline that is {self.spline.length:g} m long but is {length:g} m "
+                "long itself: lower spline.length"
             )
 
     def _check_sections(self, name: str) -> None:

@@ -79,7 +79,7 @@ def _opened(
     _refuse_damaged(path)
     gmsh.option.setNumber("Geometry.OCCAutoFix", 0)
     gmsh.option.setNumber("Geometry.OCCImportLabels", 1)
-    tell(f"reading {Path(path).stat().st_size / 1e6:.3g} MB")
+    tell(f"reading {Path(path).stat().st_size / 1e6:.1f} MB")
     _read(path)
     closed = _closed(path, sound=known is not None)
     if not 1 <= (n := len(gmsh.model.getEntities(3))) <= MAX_SOLIDS:

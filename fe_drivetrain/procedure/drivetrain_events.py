@@ -77,6 +77,11 @@ class Event:
     teeth: ClassVar[bool] = False
     seconds: ClassVar[float]
 
+    @property
+    def happens_at(self) -> tuple[Level, ...]:
+        """Levels at which it happens with its values."""
+        return self.levels
+
     def plan(self, of: Running, duration: float, slip: float) -> Planned:
         """Phases of the event."""
         raise NotImplementedError
@@ -231,6 +236,11 @@ class VoltageDip(GearboxOffset, Event):
         _in_range(self, recovery=(1e-4, 600.0))
         self.check_gearbox()
         self.dip()
+
+    @property
+    def happens_at(self) -> tuple[Level, ...]:
+        """All levels, but with a gearbox beside the main shaft those that have its motions."""
+        return SIX_MOTIONS if self.gearbox.any() else self.levels
 
     def dip(self) -> Dip:
         """The dip as a table."""

@@ -64,6 +64,7 @@ def identified(one: Identified, measured: Channels) -> Outcome:
                 f"{measured.source}: channel {name!r} is in {measured.units[name]!r} but must be "
                 f"in {unit} or a multiple: map another column"
             )
+    _require_turn(one, measured)
     torque = measured.of(one.torque)
     angle = measured.of(one.front) - measured.of(one.rear) / one.ratio
     fit = spectral_fit(torque, angle, measured.step, one.band)
@@ -100,6 +101,20 @@ def identified(one: Identified, measured: Channels) -> Outcome:
                 )
             )
     return Outcome(tuple(verdicts), spreads, methods)
+
+
+def _require_turn(one: Identified, measured: Channels) -> None:
+    """Refuse a ratio of 0, and a turn that two windows of a record cannot have."""
+    if one.ratio == 0.0:
+        raise InputError("ratio of identified is 0 but must not be: give that of both speeds")
+    if one.turn is None:
+        return
+    low, high = 2.0 * measured.step, 0.5 * len(measured.of(one.torque)) * measured.step
+    if not low <= one.turn <= high:
+        raise InputError(
+            f"{measured.source}: turn is {one.turn:g} s but must be from {low:g} s, two samples, "
+            f"to {high:g} s, half of the record: give the time of a turn of the rotor"
+        )
 
 
 def _by_spectra(one: Identified, fit: Fit, measured: Channels) -> list[Verdict]:

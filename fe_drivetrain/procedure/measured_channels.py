@@ -131,9 +131,25 @@ def faults_of_files(
             faults.append(
                 f"{name} channels of {by.case} are of {of}: give those of this drivetrain"
             )
+    faults += _twice(comparison, folder)
     if capture is not None and (folder / capture.files.file).is_file():
         faults += _apart(capture, comparison, folder)
     return tuple(faults)
+
+
+def _twice(comparison: Comparison, folder: Path) -> list[str]:
+    """Columns that are compared with themselves, in a sentence."""
+    one, other = comparison.measured, comparison.computed
+    if other is None or (folder / one.file).resolve() != (folder / other.file).resolve():
+        return []
+    names = dict.fromkeys(q.channel for q in comparison.quantities)
+    same = [n for n in names if one.channels.get(n, n) == other.channels.get(n, n)]
+    if not same:
+        return []
+    return [
+        f"{', '.join(same)} of {one.file} stands for measured and for computed: give the model's "
+        "own channels"
+    ]
 
 
 def _made_by(given: ChannelFile, folder: Path) -> Results | None:

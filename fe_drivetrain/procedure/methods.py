@@ -152,7 +152,17 @@ def damping_of_decay(decay: Decay, stiffness: float) -> tuple[float, float]:
         Of its twist.
     stiffness : float
         Of the shaft [N m/rad].
+
+    Raises
+    ------
+    InputError
+        The twist grows.
     """
+    if decay.decrement <= 0.0:
+        raise InputError(
+            f"the twist does not decay after the stop (decrement {decay.decrement:.3g}): give the "
+            "time at which the torque was lost"
+        )
     natural = 2.0 * np.pi * decay.frequency / float(np.sqrt(1.0 - decay.ratio**2))
     damping = 2.0 * decay.ratio * stiffness / natural
     return damping, damping * decay.band / decay.decrement

@@ -44,11 +44,7 @@ from fe_drivetrain.studies.transient_digest import (
     driven,
     moving_under,
 )
-from fe_drivetrain.studies.transient_events import (
-    prepared_event,
-    rated_of,
-    values_of_file,
-)
+from fe_drivetrain.studies.transient_events import prepared_event, rated_of, values_of_file
 from fe_drivetrain.studies.transient_findings import (
     judge_run,
     state_assumptions,
@@ -58,6 +54,7 @@ from fe_drivetrain.studies.transient_findings import (
 from fe_drivetrain.studies.transient_histories import (
     OPERATION,
     driving_options,
+    no_coarser,
     state_base,
     takes_histories,
 )
@@ -254,9 +251,10 @@ class _Asked:
             return found
         if self.level in WORDS and WORDS[self.level] not in possible:
             words = [word for word, one in WORDS.items() if one in possible]
+            having = " with its values" if self.values else ""
             raise InputError(
-                f"event {self.event} does not happen at the level {self.level}: choose one of "
-                f"{', '.join(words)}"
+                f"event {self.event}{having} does not happen at the level {self.level}: choose "
+                f"one of {', '.join(words)}"
             )
         return [named_rung(self.level, every, self.machine)]
 
@@ -290,7 +288,7 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
         return run
 
     found = _findings(asked)
-    runs, number = _compared(asked, asked.levels(event.levels), at, asked.step, steps)
+    runs, number = _compared(asked, asked.levels(event.happens_at), at, asked.step, steps)
     run = runs[number]
     torque, instants = telling_torque(run.extremes), None
     if torque and asked.event == "stop":
@@ -368,6 +366,8 @@ def _operated(
     )
     _require_span("duration", options.until, (0.0, inf))
     _require_span("step", options.step, STEPS)
+    if asked.step is None:
+        options = no_coarser(options, files[0])
     first = options.read(files[0])
     hub = None if isinstance(first, BaseHistory) else first
     asked.parts.require_winds(files, nan if hub is None else hub.wind)

@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.provenance import program_hash
@@ -45,6 +47,7 @@ CLASSES = 128
 KEPT = 20_000
 """Samples of a history that are kept for a chart, at most."""
 
+_ROUNDED = 1e-3  # share of the time between samples, as files of few digits have it
 _MANY = 4  # files for which it pays to start processes
 
 
@@ -82,11 +85,44 @@ class OperationOptions(HistoryOptions):
         Raises
         ------
         InputError
+            It cannot be read, has not what is needed, or has samples closer than steps.
+        """
+        found = self.sampled(file)
+        between = spacing(found)
+        if self.step > between * (1.0 + _ROUNDED):
+            raise InputError(
+                f"{argument('step')} is {self.step:g} s but samples of '{file}' are {between:g} s "
+                f"apart, between which steps would leave some out: give {between:g} s or less"
+            )
+        return found
+
+    def sampled(self, file: Path) -> DriveHistory | BaseHistory:
+        """The history in a file, however close its samples are.
+
+        Parameters
+        ----------
+        file : Path
+            The file.
+
+        Raises
+        ------
+        InputError
             It cannot be read, or has not what is needed.
         """
         if self.base is None:
             return read_drive(file, self.names, self.skip)
         return read_base_history(file, self.names, self.skip, self.base)
+
+
+def spacing(history: DriveHistory | BaseHistory) -> float:
+    """Time between samples of a history [s].
+
+    Parameters
+    ----------
+    history : DriveHistory or BaseHistory
+        The history.
+    """
+    return float(np.median(np.diff(history.time)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from fe_drivetrain.procedure.travelling_planets import STAND
 from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
-from fe_drivetrain.studies.transient_digest import OperationOptions
+from fe_drivetrain.studies.transient_digest import OperationOptions, spacing
 from fe_drivetrain.turbine_loads.hub_loads.base_history import BaseHistory
 from fe_drivetrain.turbine_loads.hub_loads.recorded import short_name
 
@@ -47,6 +47,24 @@ def takes_histories(event: str, given: bool) -> bool:
             f"{OPERATION} or {BASE}"
         )
     return event == OPERATION or given
+
+
+def no_coarser(options: OperationOptions, file: Path) -> OperationOptions:
+    """Options whose steps are no longer than the time between samples of a history.
+
+    Parameters
+    ----------
+    options : OperationOptions
+        How histories are read.
+    file : Path
+        The history.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, or has not what is needed.
+    """
+    return replace(options, step=min(options.step, spacing(options.sampled(file))))
 
 
 def driving_options(

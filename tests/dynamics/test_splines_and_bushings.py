@@ -128,10 +128,11 @@ def test_a_spline_is_a_link_between_two_nodes_of_its_line() -> None:
     [
         ({"gearbox.shafts.2.spline": SPLINE}, "shaft 'HSS' is a coupling.* and has a spline"),
         (spline(at=0.7), "shaft 'IS1' has its spline at 0.7 m but is 0.6 m long"),
+        (spline(length=0.7), "has a spline that is 0.7 m long but is 0.6 m long itself"),
         (spline(teeth=3), "shaft 1: spline: .*teeth is 3 but must be at least 6"),
         (
             {"gearbox.stages.0.bushing": [1e9, 1e9, 1e9, 0, 1e8, 1e8]},
-            "bushed pin 1 can turn freely",
+            "bushing.3 is 0 but must be greater than 0",
         ),
     ],
 )

@@ -84,3 +84,26 @@ def test_the_damper_of_a_decay_is_exact_of_an_exact_decay() -> None:
 def test_a_stop_after_the_record_is_refused(record: Channels) -> None:
     with pytest.raises(InputError, match="stop = 500 s is at the end of a record of 130 s, or"):
         identified(asked(stop=500.0), record)
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"turn": 1e-6}, "turn is 1e-06 s but must be from"),
+        ({"turn": 66.0}, "to 65 s, half of the record"),
+        ({"turn": 1e9}, "turn is 1e\\+09 s"),
+        ({"ratio": 0.0}, "ratio of identified is 0"),
+    ],
+)
+def test_a_turn_that_the_record_has_not_is_refused(
+    record: Channels, more: dict[str, float], said: str
+) -> None:
+    with pytest.raises(InputError, match=said):
+        identified(asked(**more), record)
+
+
+def test_a_twist_that_grows_has_no_damper() -> None:
+    time = np.arange(0.0, 3.0, 1e-3)
+    growing = np.exp(0.5 * time) * np.cos(12.0 * time)
+    with pytest.raises(InputError, match="does not decay after the stop"):
+        damping_of_decay(logarithmic_decrement(growing, 1e-3), 1e6)

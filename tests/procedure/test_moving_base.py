@@ -163,6 +163,12 @@ def test_what_cannot_be_read_is_refused(
         read_base_history(file, mapping)
 
 
+def test_an_acceleration_that_no_nacelle_has_is_refused(tmp_path: Path) -> None:
+    """As of a column in mm/s^2 whose head says g."""
+    with pytest.raises(InputError, match=r"is 2941\.\d+ m/s\^2 or rad/s\^2 .* at most 1000"):
+        read_base_history(table(tmp_path / "base.csv", ax__g=1e3 * SINE))
+
+
 def test_the_study_on_a_base_that_moves(tmp_path: Path) -> None:
     """Twice the acceleration changes forces twice as much; values that do not apply are refused."""
     rated = {"operation.rated_power": 1e4, "operation.rotor_speed": [0.3, 0.6]}

@@ -308,6 +308,12 @@ def test_wind_and_measured_channels_are_of_one_run(small: Content, tmp_path: Pat
     assert "one run" not in lacks_of(small, tmp_path, 6)
 
 
+def test_channels_are_not_compared_with_themselves(small: Content, tmp_path: Path) -> None:
+    change(small, "comparison.computed", small["comparison"]["measured"])
+    words = lacks_of(small, tmp_path, 6)
+    assert "torque of mine.csv stands for measured and for computed" in words
+
+
 def test_channels_that_a_case_made_are_no_measurement(small: Content, tmp_path: Path) -> None:
     write_case(tmp_path / "reports", "group/made", drivetrains=[OTHER])
     for name in ("mine", "model"):

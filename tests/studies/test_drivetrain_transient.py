@@ -202,7 +202,7 @@ def test_a_run_that_is_resumed_reads_what_is_done_no_more(
     assert again.tables["equivalent_loads"] == first.tables["equivalent_loads"]
     with pytest.raises(AssertionError, match="b"):
         transient(
-            two_masses(), "operation", loads=files, options=OperationOptions(step=0.1), resume=True
+            two_masses(), "operation", loads=files, options=OperationOptions(step=0.04), resume=True
         )
 
 
@@ -218,6 +218,7 @@ def test_a_run_that_is_resumed_reads_what_is_done_no_more(
         ("stop", {"level": "rigid"}, "needs what its file does not state: rotor: mass"),
         ("offset", {"values": {"coupling": 1e6}}, "event offset needs all motions of 'Two masses'"),
         ("offset", {"values": {"coupling": 1e6}, "level": "torsional"}, "does not happen at"),
+        ("dip", {"values": {"gearbox_uz": 1e-3}, "level": "torsional"}, "dip with its values does"),
         ("operation", {}, "operation needs histories"),
         ("operation", {"loads": "none.csv"}, "none.csv"),
     ],
@@ -233,6 +234,7 @@ def test_what_cannot_be_asked_is_refused(event: str, more: dict[str, object], sa
         ({"duration": -5.0}, "`duration` is -5 s but must be above 0 s: change it"),
         ({"duration": 0.0}, "`duration` is 0 s but must be above 0 s"),
         ({"step": 0.0}, "`step` is 0 s but must be from 1e-07 to 1 s"),
+        ({"step": 0.1}, "`step` is 0.1 s but samples of .*a.csv' are 0.05 s apart"),
         ({"options": OperationOptions(until=-1.0)}, "`duration` is -1 s"),
         ({"damage": DamageOptions(site=Site(8.5))}, "there is no wind speed"),
     ],

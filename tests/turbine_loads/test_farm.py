@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.exact_sums import ExactSum, exact_sum
 from fe_drivetrain.common.jobs import AT_ONCE
+from fe_drivetrain.turbine_loads.histories.classes import MAXIMUM
 from fe_drivetrain.turbine_loads.histories.cycles import rainflow_cycles
 from fe_drivetrain.turbine_loads.histories.farm import (
     LONGEST_RUN,
@@ -20,6 +21,15 @@ from fe_drivetrain.turbine_loads.histories.farm import (
 )
 
 COUNTING = Counting(-3, (3.0, 10.0))
+
+
+def test_a_history_far_beyond_its_classes_takes_wider_ones() -> None:
+    """A swing of 1e12 is not counted in 8e12 classes of an eighth."""
+    far, near = (piece(k * np.array([0.0, 1.0, 0.0]), COUNTING) for k in (1e12, 3.0))
+    assert far.count.levels.amount.size <= MAXIMUM
+    assert far.count.levels.amount.sum() == 3
+    assert far.count.levels.edges()[-1] > 1e12 >= far.count.levels.edges()[-2]
+    assert near.count.levels.powers == (-3,)
 
 
 def same(one, other):

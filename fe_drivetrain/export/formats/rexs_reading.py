@@ -260,7 +260,7 @@ def _written(
     missing = tuple(_missing(data, found, rows, bearings))
     not_used = tuple(_not_used(model))
     text = _text(data, origin, file, missing, not_used)
-    drivetrain = parse_drivetrain(text, source="as a drivetrain's file it")
+    drivetrain = parse_drivetrain(text, source="as a drivetrain's file")
     between = [
         f"{'planetary' if stage.is_planetary else 'parallel'} stage {k}"
         for k, stage in enumerate(found, start=1)

@@ -75,16 +75,18 @@ def in_classes(
     least : int
         Classes over the range of each quantity, at least.
     power : int, optional
-        Power of two: the width of the classes, where it is not to follow from the range.
+        Power of two: the width of the classes, where it is not to follow from the range. They are
+        twice as wide, and twice again, where there would be more than `MAXIMUM` of them.
     """
     powers, first, places, shape = [], [], [], []
     for column in columns:
         values = np.asarray(column, dtype=float)
         low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
         span = (high - low) or max(abs(low), abs(high))
-        own = power
-        if own is None:
+        if power is None:
             own = int(np.floor(np.log2(span / least))) if span else _FINEST
+        else:
+            own = _wide_enough(power, low, high)
         numbers = np.floor(np.ldexp(values, -own))
         start = int(np.floor(np.ldexp(low, -own)))
         powers.append(own)
@@ -95,6 +97,13 @@ def in_classes(
     counted = np.bincount(flat, np.asarray(weights, dtype=float), int(np.prod(shape)))
     amount: Floats = np.asarray(counted, dtype=np.float64)
     return Classes(tuple(powers), tuple(first), amount.reshape(shape))
+
+
+def _wide_enough(power: int, low: float, high: float) -> int:
+    """The power of two from `power` on of which no more than `MAXIMUM` classes have the range."""
+    while np.floor(np.ldexp(high, -power)) - np.floor(np.ldexp(low, -power)) >= MAXIMUM:
+        power += 1
+    return power
 
 
 def added(parts: Sequence[Classes]) -> Classes:

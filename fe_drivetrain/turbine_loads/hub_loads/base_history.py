@@ -39,6 +39,9 @@ from fe_drivetrain.turbine_loads.hub_loads.table_names import TABLE_NAMES
 KIND = "motion of a nacelle"
 """What a file is, for messages."""
 
+FASTEST = 1e3
+"""Largest acceleration that is taken for one [m/s^2, rad/s^2]: a hundred times that of gravity."""
+
 
 class _Set(NamedTuple):
     """Names of six channels, along and about x, y, z.
@@ -191,6 +194,7 @@ def read_base_history(
     if mapping.tilt:
         values = to_shaft_frame(values, mapping.tilt)
         read += f", turned by the shaft's tilt of {mapping.tilt:g} deg"
+    _require_possible(file, time, values)
     kept = time >= time[0] + skip
     if kept.sum() < MIN_SAMPLES:
         raise InputError(
@@ -198,6 +202,16 @@ def read_base_history(
             f"the first {skip:g} s: skip less"
         )
     return _at_centre(file.stem, time[kept], values[kept], read, reading)
+
+
+def _require_possible(file: Path, time: Floats, values: Floats) -> None:
+    """Refuse accelerations (n, 6) that no nacelle has, as of a column in another unit."""
+    if (peak := float(np.abs(values).max())) > FASTEST:
+        at = time[np.abs(values).max(axis=1).argmax()]
+        raise InputError(
+            f"{KIND} '{file}': its acceleration is {peak:g} m/s^2 or rad/s^2 at t = {at:g} s but "
+            f"must be at most {FASTEST:g}: check units in the heads of columns"
+        )
 
 
 def _at_centre(

@@ -230,7 +230,7 @@ def require_sound(
     if time.size < MIN_SAMPLES:
         raise InputError(
             f"{source}: {time.size} sample{'s' * (time.size != 1)}, fewer than the {MIN_SAMPLES} "
-            "that a mean error, an RMSE and a correlation need; give a longer history"
+            "that statistics and steps of time need; give a longer history"
         )
     for name, values in {"time": time, **columns}.items():
         bad = np.flatnonzero(~np.isfinite(values))
