@@ -45,7 +45,10 @@ class SeriesFiles:
 
     def _write(self, folder: Path, series: LoadSeries) -> None:
         history = short_name(series.file, self._files)
-        words = [re.sub(r"[^\w.-]+", "-", word) for word in (series.bearing, history)]
+        words = [
+            re.sub(r"[^\w.-]+", "-", word)
+            for word in (series.bearing, history.removesuffix(".csv"))
+        ]
         stem = f"series_{'_'.join(words)}"
         used = {row["file"] for row in self.written}
         # names that differ only where no file's name may

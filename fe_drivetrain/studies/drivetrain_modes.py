@@ -245,7 +245,10 @@ def _check(
             "from 0 and the largest above it: change them"
         )
     if speed is not None and not 0.0 < speed < math.inf:
-        raise InputError(f"speed of the rotor is {speed:g} rad/s but must be above 0: change it")
+        raise InputError(
+            f"speed of the rotor is {speed:g} rad/s, {30.0 / math.pi * speed:.6g} rpm, but must be "
+            "above 0: change it"
+        )
     if blades < 1:
         raise InputError(f"the rotor has {blades} blades but must have 1 at least: change it")
     if not 0.0 < tolerance < 1.0:

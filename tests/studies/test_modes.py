@@ -279,7 +279,7 @@ def test_what_a_level_needs_is_named() -> None:
     [
         ({"generator": "loose"}, "generator is 'loose' but must be free or held"),
         ({"speeds": (2.0, 1.0)}, "speeds of the rotor are 2 to 1 rad/s"),
-        ({"speed": -1.0}, "speed of the rotor is -1 rad/s but must be above 0"),
+        ({"speed": -1.0}, "speed of the rotor is -1 rad/s, -9.5493 rpm, but must be above 0"),
         ({"blades": 0}, "has 0 blades"),
         ({"tolerance": 1.0}, "tolerance is 1 but must be between 0 and 1"),
     ],
