@@ -10,10 +10,9 @@ from fe_drivetrain.cases.dynamics.two_mw_loads import Rolling
 from fe_drivetrain.cases.dynamics.two_mw_statements import (
     Computed,
     Statement,
-    against,
-    holds,
     of_guesses,
 )
+from fe_drivetrain.cases.references.printed_values import against, holds
 from fe_drivetrain.report.number_text import percent_text
 
 

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 from fe_drivetrain.cases.dynamics.two_mw_damage import Shares
 from fe_drivetrain.cases.dynamics.two_mw_guesses import planet_pins
 from fe_drivetrain.cases.dynamics.two_mw_loads import Change, Rolling
 from fe_drivetrain.cases.dynamics.two_mw_machine import Chain
+from fe_drivetrain.cases.references.printed_values import Stands
 from fe_drivetrain.report.suite import Record
-
-Stands = Literal["holds", "does not hold", "not testable"]
 
 RING, SUN, MIDDLE, FAST = (
     "stage 1 ring-planet",
@@ -32,9 +30,6 @@ UPWIND = (1.20, 1.13, 1.05)
 
 RANGE = (202.0, 302.0)
 """Circumferential force of ring and planet in normal operation [kN], Figure 7.14."""
-
-NEAR = 0.05
-"""A printed ratio holds where ours is within so much of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,18 +107,6 @@ class Statement:
             "verdict": self.stands,
             "reason": self.reason,
         }
-
-
-def holds(ok: bool) -> Stands:
-    """Verdict of a statement that can be tested."""
-    return "holds" if ok else "does not hold"
-
-
-def against(ours: float, printed: float, span: tuple[float, float]) -> Stands:
-    """Verdict of a number that inputs which are not printed move, within a span of ours."""
-    if abs(ours / printed - 1.0) <= NEAR:
-        return "holds"
-    return "not testable" if span[0] <= printed <= span[1] else "does not hold"
 
 
 def of_guesses(span: tuple[float, float]) -> str:

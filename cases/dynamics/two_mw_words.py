@@ -15,7 +15,6 @@ from fe_drivetrain.cases.dynamics.two_mw_statements import (
     MESHES,
     MIDDLE,
     MORE,
-    NEAR,
     RANGE,
     RING,
     STRESSES,
@@ -23,10 +22,9 @@ from fe_drivetrain.cases.dynamics.two_mw_statements import (
     UPWIND,
     Computed,
     Statement,
-    against,
-    holds,
     of_guesses,
 )
+from fe_drivetrain.cases.references.printed_values import NEAR, against, holds
 from fe_drivetrain.report.number_text import percent_text
 
 

@@ -16,6 +16,7 @@ from fe_drivetrain.cases.references.operated_machines import (
     stop_values,
     turbine_in_wind,
 )
+from fe_drivetrain.cases.references.printed_values import against
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.dynamics import Level
@@ -262,13 +263,6 @@ def row_of(words: str, printed: str, ours: str, stands: str, reason: str) -> Rec
     }
 
 
-def within(ours: float, printed: float, span: tuple[float, float]) -> str:
-    """Verdict of a number that wind and brake, which are not printed, move within a span."""
-    if abs(ours / printed - 1.0) <= NEAR:
-        return "holds"
-    return "not testable" if span[0] <= printed <= span[1] else "does not hold"
-
-
 def by_guesses(span: tuple[float, float]) -> str:
     """What wind and brake do to a ratio, in words."""
     return f"{span[0]:.3g} to {span[1]:.3g} by wind, brake and its instant"
@@ -299,7 +293,7 @@ def ranges_of(of: ComputedStop, shaft: str, normal: float, stop: float) -> list[
             f"{words}, shutdown over normal",
             f"{round(stop / normal)}",
             f"{ratio:.2f}",
-            within(ratio, stop / normal, span),
+            against(ratio, stop / normal, span, NEAR),
             by_guesses(span),
         ),
     ]
@@ -359,7 +353,7 @@ def signs_of(of: ComputedStop, shaft: str, printed: float) -> list[Record]:
             f"{shaft} shaft: equivalent load, shutdown over normal",
             f"{printed:g}",
             f"{ratio:.2f}",
-            within(ratio, printed, span),
+            against(ratio, printed, span, NEAR),
             f"{by_guesses(span)}; his Eq 3.6 takes means of cycles in place of ranges",
         ),
     ]
@@ -371,7 +365,7 @@ def signs_of(of: ComputedStop, shaft: str, printed: float) -> list[Record]:
                 "fast shaft: least mean in the shutdown",
                 "-4 kN m",
                 f"{least:.3g} kN m",
-                within(least, -4.0, (low, high)),
+                against(least, -4.0, (low, high), NEAR),
                 f"one small cycle at the bottom of a swing; {low:.3g} to {high:.3g} by the brake",
             )
         )

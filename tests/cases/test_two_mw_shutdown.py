@@ -19,7 +19,6 @@ from fe_drivetrain.cases.dynamics.two_mw_machine import (
     thesis_machine,
 )
 from fe_drivetrain.cases.dynamics.two_mw_rolling_words import whole_share
-from fe_drivetrain.cases.dynamics.two_mw_statements import against
 from fe_drivetrain.cases.gear.turbine_years import mesh_of
 from fe_drivetrain.cases.histories import computed_stop
 from fe_drivetrain.cases.references import operated_machines
@@ -32,6 +31,7 @@ from fe_drivetrain.cases.references.operated_machines import (
     stop_values,
     turbine_in_wind,
 )
+from fe_drivetrain.cases.references.printed_values import against
 from fe_drivetrain.comparison.in_time import peak_between
 from fe_drivetrain.dynamics import Level, machine_of
 from fe_drivetrain.report.suite import Run
