@@ -166,9 +166,9 @@ def test_what_healing_found_is_remembered_and_changes_no_mesh(tmp_path, monkeypa
     monkeypatch.setattr(known_healing, "user_cache", lambda: kept)
     read = known_healing.read_in_process
 
-    def reading(action, file, request):
+    def reading(action, file, request, limits):
         tried.append("healed" not in request)
-        return read(action, file, request)
+        return read(action, file, request, limits)
 
     monkeypatch.setattr(known_healing, "read_in_process", reading)
     housing = ForeignHousing(
