@@ -15,7 +15,7 @@ from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 VOLTS, HERTZ = 690.0, 60.0
-"""Of all four (Table 4.6)."""
+"""Voltage and frequency of all four (Table 4.6)."""
 PRINTED = 28_100.0
 """Spring of D's generator, from Mandic et al. 2012 (section 4.1) [N m/rad]."""
 MODES = "First mode of drivetrain D by the stiffness of its generator to the grid"

@@ -36,7 +36,7 @@ class PublicRotor(NamedTuple):
     hub_inertia : float
         About the axis [kg m^2].
     torque, speed : float
-        Of the rotor at rated power [N m], [1/min].
+        Torque [N m] and speed [1/min] of the rotor at rated power.
     density : ndarray, (n, 2)
         Share of the blade's length, and mass per length there [kg/m]; straight lines between.
     summary : sequence of float

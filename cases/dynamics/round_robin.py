@@ -90,7 +90,7 @@ def rated_models(
     title : str
         What it is called.
     torque, speed : float
-        Of the rotor [N m, rad/s].
+        Torque [N m] and speed [rad/s] of the rotor.
     """
     models = []
     for rung in plain_rungs(drivetrain, machine):

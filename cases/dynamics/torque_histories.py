@@ -62,7 +62,7 @@ from fe_drivetrain.report.suite.chosen import SETTING
 
 TOPIC = "Normal operation on torque histories: speed, power, spectra, cycles of mesh forces"
 SPRING = Generator("spring to the grid", stiffness=28_100.0)
-"""Of drivetrain D, after Mandic et al. 2012 (section 4.1)."""
+"""Generator of drivetrain D, after Mandic et al. 2012 (section 4.1)."""
 PRINTED_SLIP = Generator("slip of 0.5 %", 0.005)
 """1809 rpm over the 1800 rpm of four poles at 60 Hz (Table 4.6)."""
 LINES = (PRINTED_SLIP, Generator("slip of 1 %", 0.01), Generator("slip of 2 %", 0.02))

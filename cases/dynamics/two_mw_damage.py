@@ -60,7 +60,7 @@ class Shares:
     gears, bearings : Mapping[str, Share]
         By ISO 6336 and ISO 281: each pass of a tooth or roller counts.
     his : Mapping[str, Share]
-        Of meshes and bearings by cycles of the contact stress over time, as in the thesis.
+        Shares of meshes and bearings by cycles of the contact stress over time, as in the thesis.
     """
 
     gears: Mapping[str, Share]

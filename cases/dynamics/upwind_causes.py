@@ -37,11 +37,11 @@ class Cause:
     Attributes
     ----------
     field : str
-        Of `Guess`.
+        Name of the field of `Guess`.
     words : str
         What it is.
     unit : str
-        Of the values shown.
+        Unit of the values shown.
     scale : float
         Values shown over those of the field.
     low, high : float

@@ -138,7 +138,7 @@ def operated(
     loads : LoadHistory
         Loads of the hub; its mean torque is brought to that of the model.
     speed : float
-        Of the rotor [rad/s].
+        Speed of the rotor [rad/s].
     count : int
         Azimuths at which the response is computed; between them its harmonics are.
     """

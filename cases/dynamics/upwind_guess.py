@@ -91,7 +91,7 @@ class Turned:
     Attributes
     ----------
     azimuths : ndarray, (a,)
-        Of the first planet, from y to z [rad].
+        Azimuths of the first planet, from y to z [rad].
     loads : ndarray, (a, planets, 2)
         Radial loads of the upwind and the downwind bearing [N].
     tilts : ndarray, (a, planets)

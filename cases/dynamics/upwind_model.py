@@ -40,7 +40,7 @@ from fe_drivetrain.elasticity.solve.condensation import Condensed
 
 STEEL = Material(youngs_modulus=206e9, poisson_ratio=0.3, density=7850.0)
 ELEMENTS = 2
-"""Of each shaft, beside its bearings and steps."""
+"""Number of elements of each shaft, beside its bearings and steps."""
 RIM_HARMONICS = tuple(range(2, 8))
 RIGID_SEAT = 1e-13
 """Compliance of a pin's seat where it is rigid [m/N, rad/(N m)]."""
@@ -67,7 +67,7 @@ class FirstStage:
     cheek : float
         x of the upwind cheek's middle from that of the pins [m].
     slices : int
-        Of the meshes of the first stage.
+        Number of slices of the meshes of the first stage.
     steps : int
         Azimuths of the carrier between two planets that means are taken over.
     """
@@ -212,7 +212,7 @@ class FirstStage:
         guess : Guess
             Its linear part.
         eccentricity : float
-            Of the sun's teeth against its axis [m].
+            Eccentricity of the sun's teeth against its axis [m].
         """
         system, load = self._system(guess, 0.0)
         at = [k for k, name in enumerate(system.spring_names) if name.startswith("stage 1 sun-p")]
@@ -385,7 +385,7 @@ def linearised(machine: Machine, rollers: Bearing, torque: float) -> MachineTabl
     machine : Machine
         With a planetary first stage.
     rollers : Bearing
-        Of each bearing.
+        Rollers of each bearing.
     torque : float
         On the rotor [N m].
     """

@@ -62,9 +62,9 @@ def printed_beside(found: Figures, fitted: Figures, known: Known) -> list[Record
     Parameters
     ----------
     found, fitted : Figures
-        Of the best guess, and of the fitted model.
+        Figures of the best guess, and of the fitted model.
     known : Known
-        Of other models.
+        Results of other models.
     """
     both = (found, fitted)
     rows = [

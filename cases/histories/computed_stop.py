@@ -52,7 +52,7 @@ class Counts:
     Attributes
     ----------
     ranges, means : ndarray, (n,)
-        Of rainflow cycles, the history followed by itself [kN m].
+        Ranges and means of rainflow cycles, the history followed by itself [kN m].
     equivalent : float
         Damage-equivalent load at 1 Hz, slope 6, by the study ``loads`` [kN m].
     """

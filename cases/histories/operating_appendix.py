@@ -39,7 +39,7 @@ def show(
     page : Page
         Takes them.
     sets : mapping of str to OfSet
-        Of the first arrangement.
+        Sets of conditions in the first arrangement.
     modes : mapping of str to float
         "flap" and "edge" of a turning blade [Hz].
     of_thesis : bool

@@ -40,7 +40,7 @@ class OfCondition:
     mean, largest : dict of str to Floats
         (rollers,) loads of each place of a roller, the upwind row first, by arrangement [kN].
     spectra : dict of str to Raceway
-        Of the load of the upwind raceway, by arrangement.
+        Spectra of the load of the upwind raceway, by arrangement.
     settled : bool
         Whether the equilibrium converged in every step.
     """

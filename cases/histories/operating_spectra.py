@@ -32,9 +32,9 @@ class Raceway:
     Attributes
     ----------
     stands : Spectrum
-        Of the sum of all contacts of the row, as a race feels it that stands [kN].
+        Spectrum of the sum of all contacts of the row, which a race feels that stands [kN].
     turns : Spectrum
-        Of the contact load at a point of the inner race, which turns with the rotor [kN].
+        Spectrum of the load at a point of the inner race, which turns with the rotor [kN].
     speed : float
         Mean speed of the rotor [Hz].
     """
@@ -119,7 +119,7 @@ def peaks(found: Spectrum, speed: float) -> list[Peak]:
     found : Spectrum
         The spectrum.
     speed : float
-        Of the rotor [Hz].
+        Speed of the rotor [Hz].
     """
     from scipy.signal import find_peaks
 
@@ -149,7 +149,7 @@ class OfSet:
     peaks : dict of str to list of Peak
         What stands out of each.
     speed : float
-        Of the rotor [Hz].
+        Speed of the rotor [Hz].
     """
 
     spectra: dict[str, Spectrum]
@@ -214,7 +214,7 @@ def labels(modes: Mapping[str, float], speed: float) -> dict[str, list[float]]:
         "flap" and "edge" of a turning blade [Hz]; a frame that stands has them less and plus that
         of rotation.
     speed : float
-        Of the rotor [Hz].
+        Speed of the rotor [Hz].
     """
     found: dict[str, list[float]] = {"1P": [1.0], "3P": [3.0]}
     flap, edge = modes["flap"] / speed, modes["edge"] / speed

@@ -36,7 +36,7 @@ class InShaft:
     Attributes
     ----------
     name : str
-        Of the bearing in the body.
+        Name of the bearing in the body.
     body : LinearBody
         The shaft on its gearbox.
     bearings : Mapping[str, Bearing]

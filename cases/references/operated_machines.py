@@ -55,7 +55,7 @@ def turbine_in_wind(
     wind : float
         Mean wind speed [m/s].
     turbulence : str
-        As of `Condition`.
+        Turbulence, as `Condition` has it.
     seed : int
         Seed of the wind.
     """

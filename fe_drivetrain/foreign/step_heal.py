@@ -265,7 +265,7 @@ def heal(
     wrong = "" if sound else fault()
     if not wrong and not smallest_detail > 0:
         return Healed(before, "not healed: its shells are closed, and gmsh meshes them", None)
-    if "intersect" in wrong and _many():  # healing hardly ever mends it, and takes minutes here
+    if "intersect" in wrong and _many():  # healing hardly ever removes it, and takes minutes here
         raise InputError(
             f"{name}: {wrong}, with smaller elements there, too: its faces cross, so repair it in "
             "the CAD program"

@@ -24,9 +24,9 @@ def load_zone(name: str, rows: Sequence[Row], mean: Floats, peak: Floats, seen: 
     Parameters
     ----------
     name : str
-        Of the bearing.
+        Name of the bearing.
     rows : sequence of Row
-        Of the bearing.
+        Rows of the bearing.
     mean, peak : Floats
         (rows, elements) [N].
     seen : str
@@ -67,9 +67,9 @@ def zones_by_wind(
     Parameters
     ----------
     name : str
-        Of the bearing.
+        Name of the bearing.
     rows : sequence of Row
-        Of the bearing.
+        Rows of the bearing.
     by_wind : sequence of WindLoads
         The winds, of which `SHOWN` are drawn at most, the first and the last among them.
     what : {"mean", "largest"}

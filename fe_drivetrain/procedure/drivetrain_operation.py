@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.integrate import trapezoid
+from scipy.integrate import cumulative_trapezoid, trapezoid
 from scipy.interpolate import CubicSpline
 
 from fe_drivetrain.common.arrays import Floats
@@ -26,7 +26,7 @@ from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies.equations import Equations, Loads, SpringLaws, summed, varying
 from fe_drivetrain.dynamics.bodies.levels import Level, assembly
 from fe_drivetrain.dynamics.bodies.steady_state import wind_up
-from fe_drivetrain.dynamics.time.base_motion import base_acceleration, integrated, on_base
+from fe_drivetrain.dynamics.time.base_motion import base_acceleration, on_base
 from fe_drivetrain.dynamics.time.energy_account import WORK
 from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.machines import slip_line
@@ -156,7 +156,7 @@ def shaken(of: Running, history: BaseHistory, slip: float) -> Operation:
     bodies = assembly(of.machine, of.level, flexible=of.flexible).bodies
     time, a = history.time, history.accelerations
     moved = a.any(axis=0)
-    gained = integrated(time, a[:, moved])
+    gained = cumulative_trapezoid(a[:, moved], time, axis=0, initial=0.0)
     velocity = -trapezoid(gained, time, axis=0) / history.seconds
     base = base_acceleration(on_base(of.system, bodies)[:, moved], time, a[:, moved], velocity)
     equations, acting = steady_run(of, slip)

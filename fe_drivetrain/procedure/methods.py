@@ -149,9 +149,9 @@ def damping_of_decay(decay: Decay, stiffness: float) -> tuple[float, float]:
     Parameters
     ----------
     decay : Decay
-        Of its twist.
+        Decay of its twist.
     stiffness : float
-        Of the shaft [N m/rad].
+        Stiffness of the shaft [N m/rad].
 
     Raises
     ------

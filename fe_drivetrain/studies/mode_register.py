@@ -26,7 +26,7 @@ FARTHEST = 1.0
 def nearest_meetings(modes: Modes) -> dict[str, Meeting | None]:
     """By excitation its meeting of the least margin with a mode that it can drive, or None.
 
-    Of equal margins, as of several crossings, the one with most of the mode's energy.
+    Where margins are equal, as with several crossings, it is that with most of the mode's energy.
 
     Parameters
     ----------
@@ -108,11 +108,11 @@ def margins_of(excitation: Excitation, modes: Modes, speeds: Floats) -> Floats:
     Parameters
     ----------
     excitation : Excitation
-        Of the register.
+        Excitation of the register.
     modes : Modes
         With speeds of operation.
     speeds : ndarray, (s,)
-        Of the rotor [rad/s].
+        Speeds of the rotor [rad/s].
     """
     driven = [
         one.frequency

@@ -164,7 +164,7 @@ def test_what_cannot_be_read_is_refused(
 
 
 def test_an_acceleration_that_no_nacelle_has_is_refused(tmp_path: Path) -> None:
-    """As of a column in mm/s^2 whose head says g."""
+    """A column in mm/s^2 whose head says g."""
     with pytest.raises(InputError, match=r"is 2941\.\d+ m/s\^2 or rad/s\^2 .* at most 1000"):
         read_base_history(table(tmp_path / "base.csv", ax__g=1e3 * SINE))
 

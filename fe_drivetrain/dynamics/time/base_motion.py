@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import CubicSpline
 
 from fe_drivetrain.common.arrays import Floats
@@ -73,7 +74,7 @@ class BaseMotion:
     def _velocities(self) -> tuple[Floats, Floats]:
         """Times (f,), finer than samples, and velocities (f, b) there."""
         steps, a = np.diff(self.times)[:, None], self.accelerations
-        v = self.velocity + integrated(self.times, a)
+        v = self.velocity + cumulative_trapezoid(a, self.times, axis=0, initial=0.0)
         part = (np.arange(FINER) / FINER)[:, None, None]
         slopes = np.diff(a, axis=0) * part / 2.0
         within = v[:-1] + steps * part * (a[:-1] + slopes)
@@ -139,13 +140,6 @@ def base_acceleration(
     S, t, a = _samples(motions, times, accelerations)
     begin = np.broadcast_to(np.asarray(velocity, dtype=np.float64), (S.shape[1],))
     return BaseMotion(S, t, a, np.array(begin))
-
-
-def integrated(times: Floats, values: Floats) -> Floats:
-    """(s, b) integrals over time of values (s, b) that are straight between samples, from zero."""
-    steps = np.diff(times)[:, None]
-    parts = 0.5 * steps * (values[1:] + values[:-1])
-    return np.vstack([np.zeros((1, values.shape[1])), np.cumsum(parts, axis=0)])
 
 
 def _samples(
