@@ -147,9 +147,9 @@ def margin_chart(modes: Modes) -> Chart | None:
     ]
     ends = np.array(modes.speeds) * RPM
     curves.append(trace("margin asked for", ends, np.full(2, 100.0 * NEAR), line={"dash": "dot"}))
-    few = f", the {len(names)} nearest of {len(modes.excitations)}" if names else ""
     return chart(
-        f"Margin of excitations to the modes that they can drive, over the speed of the rotor{few}",
+        "Margin of excitations to the modes that they can drive, over the speed of the rotor, the "
+        f"{len(names)} nearest of {len(modes.excitations)}",
         curves,
         "speed of the rotor [rpm]",
         "margin [%]",

@@ -197,11 +197,9 @@ def _root_of(turbine: Turbine, modes: BladeModes, blade: _Blade, sums: Floats) -
     flap = sums[1] - root * sums[0] + arm * out - bent(AX, blade.second)
     flap -= bent(q, W**2 * RX + pull * FX) + both(XT, q, swept)
     flap += cone * (W**2 * inertia + pull * arm + bent(AT, swept))
-    edge = sums[3] - root * sums[2] + arm * drive - inertia * blade.faster + bent(AT, gone)
-    edge -= bent(q, W**2 * RT + pull * FT) + both(TT, q, swept)
+    driven = sums[3] - root * sums[2] + arm * drive - inertia * blade.faster + bent(AT, gone)
+    edge = driven - (bent(q, W**2 * RT + pull * FT) + both(TT, q, swept))
     torsion = bent(q, sums[6:8]) + bent(q, FT * out) - both(XT, blade.second, q)
     torsion -= bent(q, FX * drive - RX * blade.faster) + both(XT, q, gone)
-    torsion += cone * (
-        sums[3] - root * sums[2] + arm * drive - inertia * blade.faster + bent(AT, gone)
-    )
+    torsion += cone * driven
     return np.stack([Fx, Fr, Ft, edge, torsion, -flap])
