@@ -27,7 +27,7 @@ from fe_drivetrain.command_line.settings import DrivetrainSettings, Tolerance, p
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
-    from fe_drivetrain.studies.transient_digest import OperationOptions
+    from fe_drivetrain.studies.transient_histories import OperationOptions
     from fe_drivetrain.studies.transient_parts import DamageOptions
 
 EVENTS = ("operation", "stop", "grid-loss", "dip", "run-up", "offset", "base")
@@ -203,7 +203,7 @@ class TransientRequest:
             An option has another form, or is out of range.
         """
         from fe_drivetrain.command_line.option_values import parse_mapping
-        from fe_drivetrain.studies.transient_digest import OperationOptions
+        from fe_drivetrain.studies.transient_histories import OperationOptions
         from fe_drivetrain.turbine_loads.histories.damage import SLOPES
 
         return OperationOptions(

@@ -39,7 +39,6 @@ from fe_drivetrain.studies.torque_limits import note_limits, torque_limits
 from fe_drivetrain.studies.transient_answers import Beside, state_answer
 from fe_drivetrain.studies.transient_digest import (
     FileDigest,
-    OperationOptions,
     digests,
     driven,
     moving_under,
@@ -53,8 +52,9 @@ from fe_drivetrain.studies.transient_findings import (
 )
 from fe_drivetrain.studies.transient_histories import (
     OPERATION,
+    OperationOptions,
     driving_options,
-    no_coarser,
+    spacing,
     state_base,
     takes_histories,
 )
@@ -366,13 +366,13 @@ def _operated(
     )
     _require_span("duration", options.until, (0.0, inf))
     _require_span("step", options.step, STEPS)
+    first = options.sampled(files[0])
     if asked.step is None:
-        options = no_coarser(options, files[0])
-    first = options.read(files[0])
+        options = replace(options, step=min(options.step, spacing(first)))
+    options.require_spacing(first, files[0])
     hub = None if isinstance(first, BaseHistory) else first
     asked.parts.require_winds(files, nan if hub is None else hub.wind)
     window = min(WINDOW if options.until is None else options.until, WINDOW, first.seconds)
-
     counted = asked.parts.counted
     made: dict[str, Prepared] = {}
 
@@ -414,8 +414,8 @@ def _operated(
     found.data("equivalent_loads", equivalent_rows(of_files, extremes, options.slopes))
     found.data("duration_spectra", spectrum_rows(of_files, extremes))
     found.data("files", digest_rows(of_files, extremes))
-    if isinstance(first, BaseHistory):
-        state_base(found, first, files, options, asked.values)
+    if moved := {name: one.base for name, one in of_files.items() if one.base is not None}:
+        state_base(found, moved, asked.values)
     with steps.step("gears and bearings"):
         use = asked.parts.of_operation(of_files, files, runs[number], asked.rated.torque)
     if use is not None and (use.gears or use.bearings):

@@ -9,10 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
-from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.provenance import program_hash
@@ -27,18 +25,14 @@ from fe_drivetrain.procedure.drivetrain_operation import (
     shaken,
 )
 from fe_drivetrain.report.seal import drivetrain_hash
-from fe_drivetrain.studies.history_options import HistoryOptions
 from fe_drivetrain.studies.part_loads import NO_PARTS, CountedParts, PartDigest
+from fe_drivetrain.studies.transient_histories import OperationOptions
 from fe_drivetrain.studies.transient_runs import REVERSAL, SMALL, Prepared, Rated, Samples
 from fe_drivetrain.turbine_loads.histories.classes import Classes
-from fe_drivetrain.turbine_loads.histories.damage import FREQUENCY, SLOPES
+from fe_drivetrain.turbine_loads.histories.damage import FREQUENCY
 from fe_drivetrain.turbine_loads.histories.farm import Counting, Piece, piece
-from fe_drivetrain.turbine_loads.hub_loads.base_history import (
-    BaseHistory,
-    BaseReading,
-    read_base_history,
-)
-from fe_drivetrain.turbine_loads.hub_loads.drive_history import DriveHistory, read_drive
+from fe_drivetrain.turbine_loads.hub_loads.base_history import BaseFacts, BaseHistory
+from fe_drivetrain.turbine_loads.hub_loads.drive_history import DriveHistory
 from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_digest
 
 CLASSES = 128
@@ -47,82 +41,7 @@ CLASSES = 128
 KEPT = 20_000
 """Samples of a history that are kept for a chart, at most."""
 
-_ROUNDED = 1e-3  # share of the time between samples, as files of few digits have it
 _MANY = 4  # files for which it pays to start processes
-
-
-@dataclass(frozen=True, kw_only=True)
-class OperationOptions(HistoryOptions):
-    """How histories drive a drivetrain, and how what it does is counted.
-
-    Attributes
-    ----------
-    channels, rotor_speed_rpm, skip
-        How files are read, see `HistoryOptions`.
-    slopes : Sequence[float]
-        Exponents of S-N curves of damage-equivalent loads.
-    step : float
-        Step of integration [s].
-    until : float or None
-        Time after the first sample at which a history is left; its end where None [s].
-    base : BaseReading or None
-        How histories of the base are read; None where they are of the hub's loads.
-    """
-
-    slopes: Sequence[float] = SLOPES
-    step: float = 5e-3
-    until: float | None = None
-    base: BaseReading | None = None
-
-    def read(self, file: Path) -> DriveHistory | BaseHistory:
-        """The history in a file.
-
-        Parameters
-        ----------
-        file : Path
-            The file.
-
-        Raises
-        ------
-        InputError
-            It cannot be read, has not what is needed, or has samples closer than steps.
-        """
-        found = self.sampled(file)
-        between = spacing(found)
-        if self.step > between * (1.0 + _ROUNDED):
-            raise InputError(
-                f"{argument('step')} is {self.step:g} s but samples of '{file}' are {between:g} s "
-                f"apart, between which steps would leave some out: give {between:g} s or less"
-            )
-        return found
-
-    def sampled(self, file: Path) -> DriveHistory | BaseHistory:
-        """The history in a file, however close its samples are.
-
-        Parameters
-        ----------
-        file : Path
-            The file.
-
-        Raises
-        ------
-        InputError
-            It cannot be read, or has not what is needed.
-        """
-        if self.base is None:
-            return read_drive(file, self.names, self.skip)
-        return read_base_history(file, self.names, self.skip, self.base)
-
-
-def spacing(history: DriveHistory | BaseHistory) -> float:
-    """Time between samples of a history [s].
-
-    Parameters
-    ----------
-    history : DriveHistory or BaseHistory
-        The history.
-    """
-    return float(np.median(np.diff(history.time)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +101,8 @@ class FileDigest:
         What it did to gears and bearings.
     wind : float
         Mean wind speed [m/s]; NaN where the file has none.
+    base : BaseFacts or None
+        How the base moved; None where hub loads drove it.
     """
 
     seconds: float
@@ -193,6 +114,7 @@ class FileDigest:
     absent: str = ""
     parts: PartDigest | None = None
     wind: float = np.nan
+    base: BaseFacts | None = None
 
     def equivalent(self, name: str, k: int, slope: float) -> float:
         """Damage-equivalent range of a channel at the reference frequency, of slope number k."""
@@ -348,6 +270,7 @@ def driven(
         "" if hub is None else ", ".join(hub.absent),
         counter.digest(),
         np.nan if hub is None else hub.wind,
+        history.facts if isinstance(history, BaseHistory) else None,
     )
     units = tuple(channels.unit(k) for k in range(len(channels.names)))
     times = np.concatenate([t for t, _ in shown])

@@ -121,7 +121,7 @@ def test_units_signs_tilt_place_and_means(tmp_path: Path) -> None:
         assert_allclose(found.accelerations[:, k], values - mean, atol=1e-9)
         assert_allclose(found.mean[k], mean, atol=1e-9)
     assert not found.accelerations[:, [1, 3, 5]].any()
-    assert found.turns
+    assert found.facts.turns
     assert found.read.startswith("-fore [m/s^2], up [m/s^2], pitch [deg/s^2], turned")
 
 

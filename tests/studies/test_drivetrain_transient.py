@@ -41,7 +41,8 @@ from fe_drivetrain.studies import (
     transient,
     transient_digest,
 )
-from fe_drivetrain.studies.transient_digest import OperationOptions, equivalent_range
+from fe_drivetrain.studies.transient_digest import equivalent_range
+from fe_drivetrain.studies.transient_histories import OperationOptions
 from fe_drivetrain.studies.transient_ladder import cheapest_level, level_error
 from fe_drivetrain.studies.transient_loads import design_loads
 from fe_drivetrain.studies.transient_parts import DamageOptions

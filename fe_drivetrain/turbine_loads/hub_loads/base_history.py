@@ -92,6 +92,39 @@ class BaseReading:
     keep_mean: bool = False
 
 
+@dataclass(frozen=True)
+class BaseFacts:
+    """What an acceleration of a nacelle amounts to.
+
+    Attributes
+    ----------
+    read : str
+        What was read, and what was done to it.
+    seconds : float
+        From the first sample to the last [s].
+    largest : tuple of float
+        Largest acceleration along and about x, y, z [m/s^2, rad/s^2].
+    rms : tuple of float
+        Root of the mean square along x, y, z [m/s^2].
+    mean : float
+        Largest mean along x, y, z that was taken off, or is kept [m/s^2].
+    missed : float
+        What lines between samples miss of the acceleration, RMS, over its RMS.
+    """
+
+    read: str
+    seconds: float
+    largest: tuple[float, ...]
+    rms: tuple[float, ...]
+    mean: float
+    missed: float
+
+    @property
+    def turns(self) -> bool:
+        """Whether the nacelle turns, too."""
+        return any(self.largest[3:])
+
+
 @dataclass(frozen=True, eq=False)
 class BaseHistory:
     """Acceleration of a nacelle over time.
@@ -124,20 +157,23 @@ class BaseHistory:
         return float(self.time[-1] - self.time[0])
 
     @property
-    def turns(self) -> bool:
-        """Whether the nacelle turns, too."""
-        return bool(self.accelerations[:, 3:].any())
-
-    @property
-    def missed(self) -> float:
-        """What lines between samples miss of the acceleration, RMS, over its RMS.
+    def facts(self) -> BaseFacts:
+        """What it amounts to.
 
         A curve with the second difference d of its samples leaves the line between two of them by
         d/8 at most.
         """
-        a = self.accelerations - self.accelerations.mean(axis=0)
-        bent = np.diff(a[:, :3], 2, axis=0) / 8.0
-        return float(np.sqrt((bent**2).sum() / max(float((a[:, :3] ** 2).sum()), 1e-300)))
+        along = self.accelerations[:, :3]
+        a = along - along.mean(axis=0)
+        bent = np.diff(a, 2, axis=0) / 8.0
+        return BaseFacts(
+            self.read,
+            self.seconds,
+            tuple(np.abs(self.accelerations).max(axis=0).tolist()),
+            tuple(np.sqrt((along**2).mean(axis=0)).tolist()),
+            float(np.abs(self.mean[:3]).max()),
+            float(np.sqrt((bent**2).sum() / max(float((a**2).sum()), 1e-300))),
+        )
 
 
 def read_base_history(
