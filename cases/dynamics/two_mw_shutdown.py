@@ -247,8 +247,9 @@ def own_answer(page: Page, meshes: Mapping[str, Change], bearings: Mapping[str, 
 def show_statements(page: Page, said: list[Statement]) -> None:
     """Show each statement of the thesis with its verdict."""
     page.section("Statements of section 7.2")
-    page.table("Printed, ours, verdict", [one.row for one in said])
-    page.data("statements", [one.row for one in said])
+    rows = [one.row for one in said]
+    page.table("Printed, ours, verdict", rows)
+    page.data("statements", rows)
     page.text(
         "The thesis has ring and sun grow by 27 and 12 % although they press the same planets: "
         "a planet's inertia takes a percent of these forces, so one of both is not of this event. "
@@ -272,11 +273,11 @@ def show(
     gearbox = {name: of.ratio for name, of in bearings.items() if of.stop > 0.1 * of.normal}
     groups = {"here": ratios, "thesis": dict(MORE)} if printed else {"here": ratios | gearbox}
     page.add(bars(FORCES, groups, "shutdown over normal"))
+    rows = mesh_rows(one, meshes)
     page.table(
-        "Circumferential force and contact stress (Figures 7.11, 7.14, 7.15, 7.19 to 7.21)",
-        mesh_rows(one, meshes),
+        "Circumferential force and contact stress (Figures 7.11, 7.14, 7.15, 7.19 to 7.21)", rows
     )
-    page.data("meshes", mesh_rows(one, meshes))
+    page.data("meshes", rows)
     page.add(over_time(one, meshes))
     show_histograms(page, one, meshes)
     page.section("Loads of bearings")
@@ -376,8 +377,9 @@ def show_damage(page: Page, shares: Shares | None) -> None:
         page.say("Damage of gears and bearings is counted in full runs.")
         return
     page.section("Damage in 20 years")
-    page.table("161 950 h at rated wind, 22 000 shutdowns (Figures 7.31 and 7.32)", shares.rows())
-    page.data("damage", shares.rows())
+    rows = shares.rows()
+    page.table("161 950 h at rated wind, 22 000 shutdowns (Figures 7.31 and 7.32)", rows)
+    page.data("damage", rows)
     page.text(
         "A tooth feels its whole contact stress at each pass, and a race at each roller: damage "
         "goes with loads and turns. The thesis counts rainflow cycles of the stress over time, so "

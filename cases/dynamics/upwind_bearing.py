@@ -89,7 +89,7 @@ def run(run: Run, page: Page) -> None:
     with run.step("causes"), one_blas_thread():
         effects = [effect(stage, one, best, wanted) for one in causes]
     with run.step("all together"), one_blas_thread():
-        ratios, _ = sampled(stage, causes, 24 if run.quick else 256)
+        ratios = sampled(stage, causes, 24 if run.quick else 256)
         together = Together(
             stage.ratio(best), ratios, stage.ratio(favourable(effects)), wanted, len(effects)
         )

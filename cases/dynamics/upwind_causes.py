@@ -453,10 +453,8 @@ def needed_value(
     return None, most
 
 
-def sampled(
-    stage: FirstStage, causes: Sequence[Cause], count: int, seed: int = 1
-) -> tuple[Floats, Floats]:
-    """Ratios (count,) with all guesses over their ranges at once, and their shares (count, causes).
+def sampled(stage: FirstStage, causes: Sequence[Cause], count: int, seed: int = 1) -> Floats:
+    """Ratios (count,) with all guesses over their ranges at once.
 
     Choices of the model are left out.
     """
@@ -468,7 +466,7 @@ def sampled(
             c.field: c.low + float(s) * (c.high - c.low) for c, s in zip(free, row, strict=True)
         }
         found.append(stage.ratio(replace(RIGID, **values)))
-    return np.array(found), shares
+    return np.array(found)
 
 
 def favourable(effects: Sequence[Effect]) -> Guess:

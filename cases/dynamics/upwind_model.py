@@ -172,11 +172,11 @@ class FirstStage:
             tilts.append(
                 [m[4] * cos(a) + m[5] * sin(a) for m, a in zip(moved, angles, strict=True)]
             )
+            slices = range(1, self.slices + 1)
             ring.append(
                 [
-                    [state.force(f"stage 1 ring-planet {k} slice {i + 1}") for i in range(n)]
+                    [state.force(f"stage 1 ring-planet {k} slice {i}") for i in slices]
                     for k in planets
-                    for n in (self.slices,)
                 ]
             )
         converged = all(one.converged for one in found if isinstance(one, OnRollers))

@@ -135,12 +135,13 @@ def run(run: Run, page: Page) -> None:
     )
     cases = [pair for pair, _ in steady]
     frequencies = show_frequencies(page, stages, turbine)
-    show_torques(page, [*cases, *gusty], steady[-1][0])
+    shown = SHOWN.format(winds[-1])
+    show_torques(page, [*cases, *gusty], steady[-1][0], shown)
     rows = sentences(page, stages, frequencies, cases, gusty, swift, turned)
     page.section("What the report says, and what the drivetrain does")
     page.table("Sentences of sections 4.3 and 4.6", rows)
     page.data("sentences", rows)
-    answer(page, stages, frequencies, [*cases, *gusty], swift, rows)
+    answer(page, stages, frequencies, [*cases, *gusty], swift, rows, shown)
     page.assume("damping ratio of the first mode", ratio, "", "Jonkman 2009 has 5 %; not printed")
     page.assume("rotor", f"radius {turbine.rotor.radius:.3g} m", "", "tip speed of the surrogate")
 
@@ -267,14 +268,13 @@ def show_frequencies(page: Page, stages: Stages, turbine: Turbine) -> list[Recor
     return rows
 
 
-def show_torques(page: Page, cases: Sequence[Compared], shown: Compared) -> None:
+def show_torques(page: Page, cases: Sequence[Compared], shown: Compared, title: str) -> None:
     """Torques over time, and their statistics in all load cases."""
     page.section("Torques in operation")
-    wind = float(shown.name.split()[2])
     part = slice(0, round(10.0 * RATE))
     time = np.arange(round(10.0 * RATE)) / RATE
     page.chart(
-        SHOWN.format(wind),
+        title,
         [
             trace("stage 1", time, shown.simple.low[part] / 1e3),
             trace("stage 2, main shaft", time, shown.detailed.low[part] / 1e3),
@@ -395,6 +395,7 @@ def answer(
     cases: Sequence[Compared],
     swift: Sequence[Record],
     rows: Sequence[Record],
+    hero: str,
 ) -> None:
     """State whether the simple model is enough for torques of operation."""
     low, high = (max(one.apart(shaft) for one in cases) for shaft in (LOW, HIGH))
@@ -403,9 +404,8 @@ def answer(
         for row in frequencies
         if row["stage 1 [Hz]"] is not None
     )
-    enough = [shaft for shaft, far in ((LOW, low), (HIGH, high)) if far < SIGNIFICANT]
+    words = ENOUGH[tuple(s for s, far in ((LOW, low), (HIGH, high)) if far < SIGNIFICANT)]
     hold = sum(row["verdict"] == "holds" for row in rows)
-    words = ENOUGH[tuple(enough)]
     page.answer(
         "Is the simplest model of the drivetrain enough for torques in operation?",
         f"Stage 1 is enough for {words}: damage-equivalent torques differ by "
@@ -437,7 +437,7 @@ def answer(
             ),
             page.value("statements that hold as they stand", hold, beside=len(rows), by="tested"),
         ],
-        hero=SHOWN.format(float([c for c in cases if "1.0" in c.name][-1].name.split()[2])),
+        hero=hero,
         cautions=[
             "The report prints no values of its turbine: stiffness of mounts, which its stage 2 "
             "has, is missing here.",
