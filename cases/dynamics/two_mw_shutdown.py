@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.dynamics.two_mw_damage import Shares, damage_shares
+from fe_drivetrain.cases.dynamics.two_mw_damage import HOURS, STOPS, Shares, damage_shares
 from fe_drivetrain.cases.dynamics.two_mw_guesses import (
     COLUMN,
     FLEXIBLE,
@@ -179,13 +179,10 @@ def answer(
                 f"largest mesh force, {label}: shutdown over normal",
                 of.ratio,
                 of.band + level_band(of.name, moved),
-                beside=printed,
+                beside=MORE[of.name],
                 by="thesis",
             )
-            for label, of, printed in (
-                ("ring and planet", ring, 1.27),
-                ("fast stage", fast, 1.37),
-            )
+            for label, of in (("ring and planet", ring), ("fast stage", fast))
         ]
         + [
             page.value(
@@ -378,7 +375,9 @@ def show_damage(page: Page, shares: Shares | None) -> None:
         return
     page.section("Damage in 20 years")
     rows = shares.rows()
-    page.table("161 950 h at rated wind, 22 000 shutdowns (Figures 7.31 and 7.32)", rows)
+    page.table(
+        f"{HOURS:,.0f} h at rated wind, {STOPS:,.0f} shutdowns (Figures 7.31 and 7.32)", rows
+    )
     page.data("damage", rows)
     page.text(
         "A tooth feels its whole contact stress at each pass, and a race at each roller: damage "
