@@ -29,7 +29,7 @@ from fe_drivetrain.cases.dynamics.upwind_figures import (
     peak_after_top,
 )
 from fe_drivetrain.cases.dynamics.upwind_guess import RIGID, Guess, Turned
-from fe_drivetrain.cases.dynamics.upwind_model import FirstStage, linearised
+from fe_drivetrain.cases.dynamics.upwind_model import FirstStage, linearised, with_pins
 from fe_drivetrain.cases.dynamics.upwind_printed import BEST, MEASURED, compare
 from fe_drivetrain.common import Floats, InputError
 from fe_drivetrain.common.threads import one_blas_thread
@@ -180,21 +180,10 @@ def stage_of(chosen: ChosenDrivetrain, machine: Machine) -> FirstStage:
         rollers = bearing_of(known[named[0]])
         rows = linearised(machine, rollers, torque)
     else:
-        rows = with_diagonals(machine)
+        rows = with_pins(machine, diagonal)  # what crosses is left out
     body = carrier_frame(carrier_in_size(stage.centre_distance, stage.planets))
     mount = stated_mount(chosen.drivetrain, machine)
     return FirstStage(rows, torque, body, mount, rollers, 0.0)
-
-
-def with_diagonals(machine: Machine) -> MachineTable:
-    """A machine's rows, with bearings of the first planets that have no cross terms."""
-    stage, _ = first_stage(machine)
-    rows = MachineTable.model_validate(dict(machine))
-    pins = tuple(
-        pin.model_copy(update={"stiffness": tuple(diagonal(pin.stiffness))}) for pin in stage.pins
-    )
-    first = stage.model_copy(update={"pins": pins})
-    return rows.model_copy(update={"stages": (first, *machine.stages[1:])})
 
 
 def turns_of(stage: FirstStage, best: Guess, moment: float, quick: bool) -> dict[str, Turned]:

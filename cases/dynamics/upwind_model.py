@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import cos, pi, radians, sin
@@ -19,6 +19,7 @@ from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.drivetrain_file.couplings import SplineData
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.drivetrain_file.turning_parts import SixOrMatrix
 from fe_drivetrain.dynamics import (
     Flexible,
     Level,
@@ -399,13 +400,28 @@ def linearised(machine: Machine, rollers: Bearing, torque: float) -> MachineTabl
     load = float(np.hypot(tangential, couple / (max(offsets) - min(offsets))))
     tight = rollers.with_rows(clearance=0.0)
     K = forces(tight, equilibrium(tight, [0, 0, load, 0, 0]).displacements)[1][0]
+    return with_pins(
+        machine,
+        lambda old: (np.ravel(old)[0], K[2, 2], K[2, 2], 0.0, K[3, 3], K[3, 3]),
+    )
+
+
+def with_pins(
+    machine: Machine, stiffness: Callable[[SixOrMatrix], Sequence[float]]
+) -> MachineTable:
+    """A machine's rows, with other bearings of the planets of its first stage.
+
+    Parameters
+    ----------
+    machine : Machine
+        With a planetary first stage.
+    stiffness : callable
+        Six stiffnesses by those that a bearing has [N/m, N m/rad].
+    """
+    stage = machine.stages[0]
+    assert isinstance(stage, PlanetaryData)
     pins = tuple(
-        pin.model_copy(
-            update={
-                "stiffness": (np.ravel(pin.stiffness)[0], K[2, 2], K[2, 2], 0.0, K[3, 3], K[3, 3])
-            }
-        )
-        for pin in stage.pins
+        pin.model_copy(update={"stiffness": tuple(stiffness(pin.stiffness))}) for pin in stage.pins
     )
     first = stage.model_copy(update={"pins": pins})
     rows = MachineTable.model_validate(dict(machine))
