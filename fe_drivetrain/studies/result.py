@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import BaseModel
 
-from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.report.results import Chart, Figure
 from fe_drivetrain.report.suite.findings import Found
 from fe_drivetrain.report.suite.records import strict_json
@@ -92,13 +92,17 @@ class Result(Found):
 
         Raises
         ------
+        MissingToolError
+            pandas is not installed.
         InputError
-            pandas is not installed, or there is no such table of records.
+            There is no such table of records.
         """
         try:
             import pandas as pd
         except ModuleNotFoundError as error:
-            raise InputError("to_frame needs pandas: pip install pandas") from error
+            raise MissingToolError(
+                'to_frame needs pandas: install it with pip install "fe-drivetrain[frames]"'
+            ) from error
         if not table:
             columns = ["quantity", "computed", "band", "unit"]
             return pd.DataFrame([one.model_dump() for one in self.figures], columns=columns)

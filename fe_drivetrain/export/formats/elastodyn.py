@@ -17,6 +17,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
 from fe_drivetrain.common.reading import require_readable, unreadable
 from fe_drivetrain.common.regular_files import content_of
+from fe_drivetrain.export.formats.openfast_inputs import openfast_reader
 
 SPRING, DAMPER = "DTTorSpr", "DTTorDmp"
 
@@ -138,14 +139,14 @@ def read_elastodyn(path: str | Path) -> dict[str, Any]:
 
     Raises
     ------
+    MissingToolError
+        openfast_io is not installed.
     InputError
         openfast_io cannot read the file; each of its versions reads the ElastoDyn of one version
         of OpenFAST.
     """
-    from openfast_io.FAST_reader import InputReader_OpenFAST
-
     require_readable(path, "ElastoDyn input")
-    reader = InputReader_OpenFAST()
+    reader = openfast_reader()
     reader.FAST_directory = str(Path(path).parent)
     try:
         reader.read_ElastoDyn(str(path))

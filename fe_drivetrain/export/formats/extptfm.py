@@ -18,6 +18,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import require_readable
+from fe_drivetrain.export.formats.openfast_inputs import openfast_reader
 from fe_drivetrain.export.formats.statement import comment_lines, statement, text_of
 from fe_drivetrain.export.superelement import ALLOWED, Superelement
 
@@ -158,13 +159,13 @@ def read_reduced(path: str | Path) -> Reduced:
 
     Raises
     ------
+    MissingToolError
+        openfast_io is not installed.
     InputError
         openfast_io cannot read it, or a matrix is missing or not symmetric.
     """
-    from openfast_io.FAST_reader import InputReader_OpenFAST
-
     require_readable(path, "ExtPtfm superelement")
-    reader = InputReader_OpenFAST()
+    reader = openfast_reader()
     reader.fst_vt["ExtPtfm"]["FlexASCII"] = {}
     try:
         reader.read_Superelement(str(path))

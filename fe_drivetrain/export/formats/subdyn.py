@@ -17,6 +17,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import require_readable
 from fe_drivetrain.common.scaling import max_difference
+from fe_drivetrain.export.formats.openfast_inputs import openfast_reader
 from fe_drivetrain.export.formats.statement import comment_lines, statement
 from fe_drivetrain.export.superelement import ALLOWED, Superelement
 
@@ -232,13 +233,13 @@ def read_spring(path: str | Path) -> Spring:
 
     Raises
     ------
+    MissingToolError
+        openfast_io is not installed.
     InputError
         openfast_io cannot read the file, or it has no spring element between its joints.
     """
-    from openfast_io.FAST_reader import InputReader_OpenFAST
-
     require_readable(path, "SubDyn input")
-    reader = InputReader_OpenFAST()
+    reader = openfast_reader()
     reader.fst_vt["outlist"]["SubDyn"] = {}
     try:
         reader.read_SubDyn(str(path))
