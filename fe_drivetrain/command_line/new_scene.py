@@ -56,6 +56,8 @@ def new_command(
         )
 
         if list_:
+            if source is not None:
+                raise InputError("--list lists arrangements, and --from is a model: give one")
             return _listed()
         if file is None:
             raise InputError("Missing FILE: name the scene file to write, as in my.yaml, or --list")

@@ -380,14 +380,24 @@ class BaseMoves(Event):
         """How histories of the base are read."""
         return BaseReading((self.x, self.y, self.z), self.mean == "kept")
 
-    def plan(self, of: Running, duration: float, slip: float) -> Planned:
-        """One phase; nothing is marked."""
+    def require_file(self) -> None:
+        """Refuse a base of which nothing says how it moves.
+
+        Raises
+        ------
+        InputError
+            There is no file.
+        """
         if not self.file:
             raise InputError(
                 f"the motion of a base needs histories: give {argument('loads')}, as in "
                 "outputs/*.outb; or a file, as in file=base.csv, with columns 'time [s]' and some "
                 "of ux [m] to rz [rad]"
             )
+
+    def plan(self, of: Running, duration: float, slip: float) -> Planned:
+        """One phase; nothing is marked."""
+        self.require_file()
         bodies = assembly(of.machine, of.level, flexible=of.flexible).bodies
         base = read_base_motion(self.file, of.system, bodies)
         made, acting = steady_run(of, slip)

@@ -193,6 +193,13 @@ def transient(
         raise InputError(
             f"{argument('tolerance')} is {tolerance:g} but must be between 0 and 1: change it"
         )
+    stated = {**values_of_file(drivetrain, event), **(values or {})}
+    by_histories = takes_histories(event, bool(loads))
+    files = recorded_files(loads) if by_histories else []
+    if not by_histories:  # said before a level is built
+        happens = event_of(event, stated)
+        if isinstance(happens, BaseMoves):
+            happens.require_file()
     steps, machine = Steps(report), machine_of(drivetrain)
     rated = rated_of(drivetrain, backlash)
     named = None if level is None else WORDS.get(level)
@@ -202,7 +209,7 @@ def transient(
         drivetrain,
         machine,
         event,
-        {**values_of_file(drivetrain, event), **(values or {})},
+        stated,
         rated,
         rungs,
         level,
@@ -214,8 +221,8 @@ def transient(
         travels(event, planets, machine, named),
         part_question(drivetrain, machine, damage),
     )
-    if takes_histories(event, bool(loads)):
-        return _operated(asked, recorded_files(loads), options or OperationOptions(), resume, steps)
+    if by_histories:
+        return _operated(asked, files, options or OperationOptions(), resume, steps)
     return _happened(asked, steps)
 
 

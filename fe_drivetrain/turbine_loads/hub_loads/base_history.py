@@ -204,7 +204,7 @@ def read_base_history(
         The file cannot be read, or has no such channel.
     """
     file, reading = existing_file(path, KIND), reading or BaseReading()
-    require_kind(file)
+    require_kind(file, KIND)
     channels = _channels(file, mapping)
     time = in_si(str(file), _time(file, channels, mapping), TIME_UNITS, KIND)
     found, chosen = _chosen(file, channels, mapping)

@@ -110,13 +110,15 @@ def history_digest(file: Path) -> str:
     return found[0] if len(found) == 1 else sha256("".join(found).encode()).hexdigest()
 
 
-def require_kind(file: Path) -> None:
+def require_kind(file: Path, kind: str = "hub loads") -> None:
     """Refuse a file that is neither of OpenFAST nor a table.
 
     Parameters
     ----------
     file : Path
         The file.
+    kind : str
+        What it holds, for messages.
 
     Raises
     ------
@@ -125,10 +127,10 @@ def require_kind(file: Path) -> None:
     """
     suffix = file.suffix.lower()
     if suffix in _OTHERWISE:
-        raise InputError(f"hub loads '{file}': '{suffix}' is not read: {_OTHERWISE[suffix]}")
+        raise InputError(f"{kind} '{file}': '{suffix}' is not read: {_OTHERWISE[suffix]}")
     if suffix not in OPENFAST and not is_table(file):
         raise InputError(
-            f"hub loads '{file}': the suffix '{file.suffix}' is not one of {', '.join(OPENFAST)} "
+            f"{kind} '{file}': the suffix '{file.suffix}' is not one of {', '.join(OPENFAST)} "
             f"(OpenFAST), {', '.join(_KINDS)}, and .%NN, .$PJ (Bladed); convert the file or rename "
             "it"
         )
