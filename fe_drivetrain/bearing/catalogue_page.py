@@ -287,7 +287,7 @@ def _wrong_ratings(page: CataloguePage) -> Iterator[str]:
             f"C is {page.C:g} N but must be {low} to {high} N with {size}: ratings are in N (1 kN "
             "is 1000), lengths in m"
         )
-    if not _STATIC[0] < page.C0 / page.C < _STATIC[1]:
+    elif not _STATIC[0] < page.C0 / page.C < _STATIC[1]:
         yield (
             f"C0 is {page.C0:g} N but must be {_STATIC[0]:g} to {_STATIC[1]:g} times C, "
             f"{page.C:g} N: correct one of them"

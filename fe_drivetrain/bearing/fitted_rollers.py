@@ -106,8 +106,9 @@ F_0 = (11.0, 17.0)
 F_0_DIGITS = 0.5
 """Half of the last digit of f_0."""
 
-CONFORMITY = (0.510, 0.530)
-"""Radius of a groove over the diameter of a ball; ISO 281 rates those up to 0.52 and 0.53."""
+CONFORMITY = (0.515, 0.530)
+"""Radius of a groove over the diameter of a ball: usual ones, from memory, with the 0.52 and 0.53
+that ISO 281 rates."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -85,8 +85,8 @@ def _lives(page: Page, result: LifeResult) -> None:
     )
     if any(np.isfinite(list(life.years.values())).any() for life in result.lives):
         page.add(result.chart())
-    _insides(page, result)
     _seats(page, result.lives)
+    _insides(page, result)
 
 
 def _insides(page: Page, result: LifeResult) -> None:
