@@ -13,7 +13,7 @@ from fe_drivetrain.report import bars
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 
-PAGES = (
+PAGES: tuple[dict[str, float | str], ...] = (
     {"designation": "240/600", "C": 8.15e6, "C0": 17e6, "Cu": 1.1e6, "e": 0.3, "Y1": 2.3},
     {"designation": "NU 2220", "C": 3.8e5, "C0": 4.5e5, "Cu": 5.4e4},
     {"designation": "32222", "C": 4.02e5, "C0": 5.7e5, "Cu": 6.1e4, "e": 0.43, "Y": 1.4},

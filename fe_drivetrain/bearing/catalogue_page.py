@@ -141,7 +141,7 @@ class CataloguePage(BaseModel):
         try:
             return cls.model_validate(data)
         except PageError as error:
-            found = error.faults
+            found = list(error.faults)
         except ValidationError as error:
             found = [*fault_sentences(error, cls, data), *_further(cls, data, error)]
         raise PageError(found, name)
@@ -189,8 +189,8 @@ class CataloguePage(BaseModel):
         """Contact angle [deg] that the page states: itself, by e, or by Y; None where by none."""
         if self.contact_angle is not None:
             return self.contact_angle
-        if self.read_as is not None and self.read_as.contact_angle is not None:
-            return self.read_as.contact_angle
+        if self.read_as is not None and self.read_as.contact_angle_deg is not None:
+            return self.read_as.contact_angle_deg
         if self.of_kind == "ball":
             return 0.0
         if self.of_kind in ("cylindrical", "toroidal"):

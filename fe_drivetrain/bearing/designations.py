@@ -89,7 +89,7 @@ class Designation:
         Whether it has no cage.
     rows : int
         Rows of rolling elements.
-    contact_angle : float or None
+    contact_angle_deg : float or None
         Of angular contact ball bearings, where the suffix states it, and 0 of deep grooves [deg].
     """
 
@@ -100,7 +100,7 @@ class Designation:
     dimension_series: str
     full_complement: bool = False
     rows: int = 1
-    contact_angle: float | None = None
+    contact_angle_deg: float | None = None
 
     @property
     def sizes(self) -> Sizes | None:

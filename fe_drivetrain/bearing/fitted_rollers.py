@@ -121,9 +121,11 @@ class FittedRollers:
         The page.
     elements : Floats
         (n,) rolling elements of one row.
-    diameter, length, pitch, angle : Floats
-        (n,) diameter and effective length of an element, pitch diameter [m], contact angle [deg];
-        length is 0 of balls.
+    diameter, length, pitch : Floats
+        (n,) diameter and effective length of an element, and pitch diameter [m]; length is 0 of
+        balls.
+    angle_deg : Floats
+        (n,) contact angle [deg].
     spread : Floats
         (n,) distance of two tapered rows [m]; 0 of others.
     crown : Floats
@@ -143,7 +145,7 @@ class FittedRollers:
     diameter: Floats
     length: Floats
     pitch: Floats
-    angle: Floats
+    angle_deg: Floats
     spread: Floats
     crown: Floats
     conformity: Floats
@@ -175,7 +177,7 @@ class FittedRollers:
         if kind != "ball":
             found["element_length"] = float(self.length[k])
         if kind not in ("cylindrical", "toroidal"):
-            found["contact_angle"] = float(self.angle[k])
+            found["contact_angle"] = float(self.angle_deg[k])
         if kind == "double_row_tapered":
             found["spread"] = float(self.spread[k])
         return found
@@ -331,7 +333,7 @@ def _rollers(page: CataloguePage, box: Box, points: Floats) -> _Drawn:
             "diameter": diameter,
             "length": length,
             "pitch": pitch,
-            "angle": np.degrees(angle),
+            "angle_deg": np.degrees(angle),
             "spread": spread,
             "crown": CROWN[0] * (CROWN[1] / CROWN[0]) ** points[:, 4],
             "conformity": 0.52 * ones,
@@ -379,7 +381,7 @@ def _balls(page: CataloguePage, box: Box, points: Floats) -> _Drawn:
             "diameter": diameter,
             "length": 0.0 * ones,
             "pitch": pitch,
-            "angle": np.degrees(angle),
+            "angle_deg": np.degrees(angle),
             "spread": 0.0 * ones,
             "crown": ones,
             "conformity": conformity,

@@ -130,7 +130,9 @@ def test_insides_have_the_static_rating_and_angle_of_the_page(data: dict[str, An
         assert found.static == pytest.approx(page.C0, rel=1e-9)
         assert RATED[0] <= page.C / found.dynamic <= RATED[1]
         assert found.dynamic / page.C == pytest.approx(fit.rated[k], rel=1e-9)
-        assert 1.5 * np.tan(np.radians(fit.angle[k])) == pytest.approx(page.e or 0.0, abs=0.0051)
+        assert 1.5 * np.tan(np.radians(fit.angle_deg[k])) == pytest.approx(
+            page.e or 0.0, abs=0.0051
+        )
 
 
 def test_balls_have_the_ratings_of_the_page() -> None:
@@ -178,6 +180,17 @@ def test_equivalent_loads_are_those_of_the_page_whatever_the_inside() -> None:
         assert rated.equivalent_load(load)[0] == pytest.approx(0.4 * 4e4 + 1.4 * 3e4)
         assert rated.three == (4.02e5, 5.7e5, 6.1e4)
         assert rated.pitch_diameter == 0.155  # mean of bore and outside diameter
+
+
+def test_factors_that_are_left_out_are_those_of_the_angle() -> None:
+    page = page_of(TAPERED, Y=None, Y0=None)
+    factors = page_factors(page)
+    assert factors is not None
+    assert page.angle is not None
+    cot = 1.0 / np.tan(np.radians(page.angle))
+    assert factors.above == pytest.approx((0.4, 0.4 * cot))  # ISO 281
+    assert factors.static == pytest.approx((0.5, 0.22 * cot))  # ISO 76
+    assert page_factors(page_of(CYLINDRICAL)) is None
 
 
 def test_bearing_file_to_start_from_is_read_and_follows_its_schema(tmp_path: Path) -> None:
