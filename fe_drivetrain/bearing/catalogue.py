@@ -10,7 +10,7 @@ import math
 from functools import cache
 from importlib.resources import files as package_files
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Any, Literal, Self, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
@@ -23,20 +23,17 @@ from fe_drivetrain.bearing.arrangements import (
     tapered_row,
     toroidal,
 )
+from fe_drivetrain.bearing.catalogue_page import CataloguePage
 from fe_drivetrain.bearing.contact import ContactLaw, houpert, iso_line
+from fe_drivetrain.bearing.designations import Kind
+from fe_drivetrain.bearing.fitted_rollers import MEMBERS, FittedRollers, fitted_rollers
 from fe_drivetrain.bearing.geometry import LAMINAE, Bearing
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated
 from fe_drivetrain.common.strict_yaml import no_truth_value
 
-Kind = Literal[
-    "double_row_tapered",
-    "single_row_tapered",
-    "spherical_roller",
-    "cylindrical",
-    "toroidal",
-    "ball",
-]
+Named: TypeAlias = str | CataloguePage
+"""What a drivetrain's file says of a bearing: the name of an entry, or a catalogue's page."""
 
 _SOURCED = (
     "elements",
@@ -95,6 +92,12 @@ class Entry(BaseModel):
         default=None, gt=0, description="that the catalogue allows [1/min]"
     )
     scenes: list[str] = Field(default=[], description="library scenes that it stands in")
+    groove: tuple[float, float] = Field(
+        default=(0.52, 0.53), description="radii of the grooves over the diameter of balls [-]"
+    )
+    page: CataloguePage | None = Field(
+        default=None, description="the catalogue's page that the inside is fitted to"
+    )
     sources: dict[str, str] = Field(description="where each number comes from, or assumed: why")
 
     _truth = field_validator("*", mode="before")(no_truth_value)
@@ -157,7 +160,16 @@ class Entry(BaseModel):
         if self.kind == "ball":
             return Bearing(
                 name,
-                (ball_row(*size, self.pitch_diameter, angle, radial_clearance=2 * self.clearance),),
+                (
+                    ball_row(
+                        *size,
+                        self.pitch_diameter,
+                        angle,
+                        inner_conformity=self.groove[0],
+                        outer_conformity=self.groove[1],
+                        radial_clearance=2 * self.clearance,
+                    ),
+                ),
             )
         assert self.element_length is not None
         law: ContactLaw = (
@@ -229,13 +241,13 @@ def read_entries(path: str | Path) -> dict[str, Entry]:
     return _parsed(read_text(path, "bearing catalogue"), str(path))
 
 
-def catalogue_bearing(name: str, *more: str | Path, **changes: Any) -> Bearing:
+def catalogue_bearing(name: Named, *more: str | Path, **changes: Any) -> Bearing:
     """A bearing of the catalogue, with other values where given.
 
     Parameters
     ----------
-    name : str
-        Name of the entry.
+    name : str or CataloguePage
+        Name of the entry, or a page, whose inside is then fitted.
     *more : str or Path
         Catalogue files beside the package's.
     **changes : Any
@@ -251,16 +263,16 @@ def catalogue_bearing(name: str, *more: str | Path, **changes: Any) -> Bearing:
     InputError
         No such entry, or values that do not fit.
     """
-    return catalogue_entry(name, *more, **changes).bearing(name)
+    return catalogue_entry(name, *more, **changes).bearing(name_of(name))
 
 
-def catalogue_entry(name: str, *more: str | Path, **changes: Any) -> Entry:
+def catalogue_entry(name: Named, *more: str | Path, **changes: Any) -> Entry:
     """Catalogue entry of a bearing; see `catalogue_bearing`.
 
     Parameters
     ----------
-    name : str
-        Name of the entry.
+    name : str or CataloguePage
+        Name of the entry, or a page, whose inside is then fitted.
     *more : str or Path
         Catalogue files beside the package's.
     **changes : Any
@@ -276,11 +288,96 @@ def catalogue_entry(name: str, *more: str | Path, **changes: Any) -> Entry:
     InputError
         No such entry, or values that do not fit.
     """
-    entries = read_bearing_catalogue(*more)
-    if name not in entries:
-        raise InputError(f"bearing {name!r} is in no catalogue: use one of {', '.join(entries)}")
-    entry = entries[name]
-    return validated(Entry, entry.model_dump() | changes, f"bearing {name}") if changes else entry
+    if isinstance(name, CataloguePage):
+        entry = fitted_entry(name)
+    else:
+        entries = read_bearing_catalogue(*more)
+        if name not in entries:
+            known = ", ".join(entries)
+            raise InputError(f"bearing {name!r} is in no catalogue: use one of {known}")
+        entry = entries[name]
+    return changed_entry(entry, name_of(name), **changes)
+
+
+def changed_entry(entry: Entry, name: str, **changes: Any) -> Entry:
+    """An entry with other values, checked; the same one where none is given.
+
+    Parameters
+    ----------
+    entry : Entry
+        The entry.
+    name : str
+        Its name, for messages.
+    **changes : Any
+        Fields of `Entry`.
+
+    Raises
+    ------
+    InputError
+        Values that do not fit.
+    """
+    if not changes:
+        return entry
+    stated = entry.model_dump(include=entry.model_fields_set)
+    return validated(Entry, stated | changes, f"bearing {name}")
+
+
+def name_of(named: Named) -> str:
+    """Name of an entry, or designation of a page."""
+    return named.designation if isinstance(named, CataloguePage) else named
+
+
+def fitted_entry(
+    page: CataloguePage, member: int | None = None, fitted: FittedRollers | None = None
+) -> Entry:
+    """A bearing with one of the insides that fit a catalogue's page.
+
+    Parameters
+    ----------
+    page : CataloguePage
+        The page.
+    member : int, optional
+        Which of them; the one nearest to the medians of all where left out.
+    fitted : FittedRollers, optional
+        The insides; `MEMBERS` of them where left out.
+
+    Returns
+    -------
+    entry : Entry
+        With the page, and its rollers as assumed. Its profile is that of the standard, times that
+        of the member where ``member`` is given, for which `FittedRollers.crown` is.
+
+    Raises
+    ------
+    InputError
+        No inside fits.
+    """
+    found = fitted_rollers(page, MEMBERS) if fitted is None else fitted
+    inside = found.fields(found.middle if member is None else member)
+    words = f"assumed: one of {len(found)} insides that fit the page"
+    data: dict[str, Any] = {
+        "title": f"{page.designation}, by its catalogue's page",
+        "kind": page.of_kind,
+        "bore": page.sizes.bore,
+        "ratings": {"C": page.C, "C0": page.C0, "Cu": page.Cu},
+        "page": page,
+        **inside,
+        "sources": {key: words for key in inside if key in _SOURCED}
+        | {"bore": "the page", "ratings": page.source},
+    }
+    if page.of_kind == "ball":
+        if member is not None:
+            data["groove"] = (float(found.conformity[member]),) * 2
+        if page.angle == 0.0:
+            data["contact_angle"] = 0.0
+    else:
+        data["law"] = "iso"
+    for key in ("arrangement", "clearance", "limiting_speed_rpm"):
+        if getattr(page, key) is not None:
+            data[key] = getattr(page, key)
+    if page.limiting_speed_rpm is not None:
+        data["sources"]["limiting_speed_rpm"] = page.source
+    return validated(Entry, data, f"page of {page.designation}")
 
 
 @cache
@@ -291,7 +388,23 @@ def _own() -> dict[str, Entry]:
 
 def _parsed(text: str, source: str) -> dict[str, Entry]:
     found = {}
+    faults: list[str] = []
     for name, data in parse_mapping(text, source).items():
-        found[name] = validated(Entry, data, f"{source}: {name}")
-        found[name].bearing(name)  # sizes that fit each other
+        try:
+            found[name] = _one_parsed(data, f"{source}: {name}")
+            found[name].bearing(name)  # sizes that fit each other
+        except InputError as error:
+            faults.append(str(error))
+    if len(faults) > 1:
+        listed = "; ".join(f"[{number}] {one}" for number, one in enumerate(faults, start=1))
+        raise InputError(f"{source} has {len(faults)} entries with faults: {listed}")
+    if faults:
+        raise InputError(faults[0])
     return found
+
+
+def _one_parsed(data: Any, source: str) -> Entry:
+    """An entry of a file: a bearing with its inside, or a catalogue's page."""
+    if isinstance(data, dict) and "designation" in data:
+        return fitted_entry(CataloguePage.read(data, source))
+    return validated(Entry, data, source)

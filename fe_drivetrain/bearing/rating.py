@@ -15,6 +15,7 @@ from typing import TypeVar
 import numpy as np
 
 from fe_drivetrain.bearing.geometry import BallRow, Bearing, RollerRow, pitch_ratio
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
 LAMBDA = 0.83
@@ -96,8 +97,13 @@ def capacity_factor(gamma: float) -> float:
     f_c : float
         Factor for N and mm.
     """
+    return float(capacity_factors(np.asarray(gamma)))
+
+
+def capacity_factors(gamma: Floats) -> Floats:
+    """f_c of roller bearings, of any shape; see `capacity_factor`."""
     opening = ((1.0 - gamma) / (1.0 + gamma)) ** (143.0 / 108.0)
-    return float(
+    return np.asarray(
         207.9
         * LAMBDA
         * gamma ** (2.0 / 9.0)
@@ -156,8 +162,13 @@ def ball_capacity_factor(gamma: float) -> float:
             f"D cos(alpha) / D_pw of the balls is {gamma:.3g}: f_c of ISO 281 goes from 0.01 to "
             "0.4; give the rating from a catalogue"
         )
+    return float(ball_capacity_factors(np.asarray(gamma)))
+
+
+def ball_capacity_factors(gamma: Floats) -> Floats:
+    """f_c of ball bearings, of any shape, from 0.01 to 0.4; see `ball_capacity_factor`."""
     count = len(_F_C_OF_BALLS)
-    return float(np.interp(gamma, np.arange(1, count + 1) / 100.0, _F_C_OF_BALLS))
+    return np.asarray(np.interp(gamma, np.arange(1, count + 1) / 100.0, _F_C_OF_BALLS))
 
 
 def _equal_rows(bearing: Bearing, kind: type[OneRow], what: str) -> OneRow:

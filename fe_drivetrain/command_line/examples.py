@@ -9,6 +9,7 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "mine.yaml",
         "mine.yaml --arrangement two-bearings",
         "mine.yaml --from gearbox.rexs",
+        "bearings.yaml --bearing",
         "--list",
     ),
     "check": ("two_bearings", "mine.yaml --open"),

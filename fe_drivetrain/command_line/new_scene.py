@@ -42,6 +42,12 @@ def new_command(
             "it does not give is listed.",
         ),
     ] = None,
+    bearing: Annotated[
+        bool,
+        typer.Option(
+            "--bearing", help="A file of bearings instead, by what a catalogue's page prints."
+        ),
+    ] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace existing files.")] = False,
     list_: Annotated[bool, typer.Option("--list", help="List the arrangements and exit.")] = False,
 ) -> None:
@@ -63,6 +69,12 @@ def new_command(
             raise InputError("Missing FILE: name the scene file to write, as in my.yaml, or --list")
         if file.suffix.lower() not in SUFFIXES:
             raise InputError(f"{file} must end in {' or '.join(SUFFIXES)}: name it as in my.yaml")
+        if bearing:
+            if source is not None or arrangement != DEFAULT:
+                raise InputError(
+                    "--bearing writes no drivetrain: leave --from and --arrangement out"
+                )
+            return _bearings(file, overwrite)
         if source is not None:
             if arrangement != DEFAULT:
                 raise InputError("--from is a gearbox and --arrangement another: give one of them")
@@ -91,6 +103,20 @@ def _listed() -> int:
     width = max(map(len, ARRANGEMENTS))
     lines = [f"{name:<{width}}  {found.title}\n" for name, found in ARRANGEMENTS.items()]
     write(sys.stdout, "".join(lines))
+    return PASSED
+
+
+def _bearings(file: Path, overwrite: bool) -> int:
+    """Write a file of bearings, and its schema beside it."""
+    from fe_drivetrain.bearing.bearing_file import SCHEMA_FILE, bearing_schema, starting_bearings
+
+    write_all({file: starting_bearings(), file.with_name(SCHEMA_FILE): bearing_schema()}, overwrite)
+    title = "bearings by what a catalogue's page prints"
+    if wants_json():
+        write_json({"file": str(file), "title": title})
+        return PASSED
+    use = f"fe-drivetrain life SCENE --loads FILES --catalogue {shlex.quote(str(file))}"
+    write(sys.stdout, f"{file}: {title}\nEdit it, then: {use} --bearing NAME=ENTRY\n")
     return PASSED
 
 

@@ -6,7 +6,7 @@ Every mistake becomes one sentence with the object, the value, the allowed range
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from difflib import get_close_matches
 from functools import lru_cache
@@ -363,6 +363,37 @@ def fault_sentence(error: ValidationError, model: type[BaseModel], data: Any = N
     faults: Sequence[Any] = error.errors(include_url=False)
     # A misspelt key first: what is missing is often the same key, spelt right.
     fault = min(faults, key=lambda f: f["type"] != "extra_forbidden")
+    return _sentence(fault, faults, model, data)
+
+
+def fault_sentences(
+    error: ValidationError, model: type[BaseModel], data: Any = None
+) -> Iterator[str]:
+    """All faults that pydantic found; see `fault_sentence`.
+
+    Parameters
+    ----------
+    error : ValidationError
+        From a validation of `model`.
+    model : type
+        Its fields give meanings and known keys.
+    data : Any
+        What was validated.
+
+    Yields
+    ------
+    str
+        One for each key, misspelt keys first.
+    """
+    faults: list[Any] = error.errors(include_url=False)
+    told: set[str] = set()
+    for fault in sorted(faults, key=lambda f: f["type"] != "extra_forbidden"):
+        if (key := _key(fault, data)) not in told:
+            told.add(key)
+            yield _sentence(fault, faults, model, data)
+
+
+def _sentence(fault: Any, faults: Sequence[Any], model: type[BaseModel], data: Any) -> str:
     kind, key = fault["type"], _key(fault, data)
     owner, field = _field(model, fault["loc"])
     if kind == "extra_forbidden":

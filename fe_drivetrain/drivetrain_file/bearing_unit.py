@@ -15,6 +15,7 @@ from pydantic import (
     model_validator,
 )
 
+from fe_drivetrain.bearing.catalogue_page import EntryOrPage
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.strict_yaml import no_truth_value, shown
@@ -120,11 +121,9 @@ class BearingUnit(Keys):
     stands_on: Literal["ground", "parts"] = Field(
         default="ground", description="whether the ground holds the housing's own base, too"
     )
-    catalogue: str | None = Field(
+    catalogue: EntryOrPage | None = Field(
         default=None,
-        min_length=1,
-        max_length=100,
-        description="name of its rolling bearing in a bearing catalogue, for lives",
+        description="its rolling bearing, for lives: name in a bearing catalogue, or a page of one",
     )
 
     @property

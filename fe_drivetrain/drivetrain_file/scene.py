@@ -9,6 +9,7 @@ from pydantic import (
     model_validator,
 )
 
+from fe_drivetrain.bearing.catalogue_page import CataloguePage
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import value_by_key
@@ -291,7 +292,7 @@ def main_bearings(
     return tuple(found)
 
 
-def _entry_of(scene: Scene, name: str) -> dict[str, str]:
+def _entry_of(scene: Scene, name: str) -> dict[str, str | CataloguePage]:
     """The catalogue entry of a bearing unit, where it has one."""
     for unit in scene.bearing_units:
         if unit.bearing.name == name and unit.catalogue is not None:

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import AfterValidator, Field, field_validator, model_validator
 
+from fe_drivetrain.bearing.catalogue_page import EntryOrPage
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import min_eigenvalue, symmetry_error
 from fe_drivetrain.drivetrain_file.couplings import SplineData
@@ -305,9 +306,7 @@ class ShaftData(ShaftRow):
 def _catalogue() -> Any:
     return Field(
         default=None,
-        min_length=1,
-        max_length=100,
-        description="name of its rolling bearing in a bearing catalogue, for lives",
+        description="its rolling bearing, for lives: name in a bearing catalogue, or a page of one",
     )
 
 
@@ -337,7 +336,7 @@ class PinData(Part):
     stiffness: SixOrMatrix = Field(
         description="axial, radial, tangential, and about them, N/m, N m/rad; or six rows"
     )
-    catalogue: str | None = _catalogue()
+    catalogue: EntryOrPage | None = _catalogue()
     clearance: float | None = _clearance()
 
 
@@ -354,7 +353,7 @@ class BearingData(Part):
     stiffness: SixOrMatrix = Field(
         description="along x, y, z and about them, N/m, N m/rad; or six rows of a matrix"
     )
-    catalogue: str | None = _catalogue()
+    catalogue: EntryOrPage | None = _catalogue()
     clearance: float | None = _clearance()
 
 

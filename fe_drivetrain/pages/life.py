@@ -86,6 +86,22 @@ def _lives(page: Page, result: LifeResult) -> None:
     if any(np.isfinite(list(life.years.values())).any() for life in result.lives):
         page.add(result.chart())
     _seats(page, result.lives)
+    _insides(page, result)
+
+
+def _insides(page: Page, result: LifeResult) -> None:
+    """Bands over the insides of bearings that are given by their catalogue's page."""
+    if "insides" not in result.tables:
+        return
+    page.section("Bearings by their catalogue's page")
+    page.table("Insides that fit the page", result.tables["insides"])
+    page.text(
+        "L10 and L10m follow from the page alone. Number, diameter, length, angle and profile of "
+        "the rolling elements are not printed: geometries that fit C, C0, e and Y in the space "
+        "between d, D and B stand for the one that is inside, and the columns have the least and "
+        "the largest of all. Stiffness is radial, on rigid rings, at the load that does most "
+        "damage. C over that printed says how the maker's rating differs from the standard's."
+    )
 
 
 def _events(page: Page, result: LifeResult) -> None:

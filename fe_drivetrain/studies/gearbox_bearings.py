@@ -11,14 +11,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fe_drivetrain.bearing.catalogue import Entry, read_bearing_catalogue
+from fe_drivetrain.bearing.catalogue import Entry, Named, name_of, read_bearing_catalogue
 from fe_drivetrain.bearing_life.coupled.reaction_paths import ReactionPath
 from fe_drivetrain.bearing_life.life.lubricants import GRADES, Lubricant
 from fe_drivetrain.bearing_life.life.rated import RatedBearing, rated_from_catalogue
 from fe_drivetrain.bearing_life.life.roller_models import rigid_rings
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics.bodies.advice import RUNGS, Rung
@@ -31,6 +30,7 @@ from fe_drivetrain.dynamics.bodies.catalogue_seats import main_names
 from fe_drivetrain.dynamics.bodies.gearbox_mount import stated_mount
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
+from fe_drivetrain.studies.named_bearings import entry_of
 from fe_drivetrain.studies.rolling_bearings import (
     Choices,
     Oil,
@@ -90,7 +90,7 @@ class MachineBearings:
 
 def machine_bearings(
     machine: Machine,
-    entries: Mapping[str, str],
+    entries: Mapping[str, Named],
     choices: Choices,
     oil: Oil,
     on_rollers: Sequence[str] = (),
@@ -146,7 +146,7 @@ def machine_bearings(
     return MachineBearings(tuple(rated), tuple(unrated), degrees, assumes=finest.assumes)
 
 
-def catalogue_entries(drivetrain: Drivetrain) -> dict[str, str]:
+def catalogue_entries(drivetrain: Drivetrain) -> dict[str, Named]:
     """Catalogue entries in a drivetrain's file, by bearing; of planets "stage 1 pin upwind".
 
     Parameters
@@ -154,7 +154,7 @@ def catalogue_entries(drivetrain: Drivetrain) -> dict[str, str]:
     drivetrain : Drivetrain
         The drivetrain.
     """
-    found: dict[str, str | None] = {}
+    found: dict[str, Named | None] = {}
     if isinstance(drivetrain, Scene):
         found |= {unit.bearing.name: unit.catalogue for unit in drivetrain.bearing_units}
     found |= {bearing.name: bearing.catalogue for bearing in drivetrain.gearbox.bearings}
@@ -236,7 +236,7 @@ class _Maker:
     """A bearing of a machine with its entry, to be made ready for lives."""
 
     name: str
-    entry_name: str
+    named: Named
     entry: Entry
     choices: Choices
 
@@ -245,12 +245,12 @@ class _Maker:
     ) -> OneBearing:
         """The bearing by the finest of its levels, with the others and other stiffnesses."""
         catalogues, profile = self.choices.catalogues, profile_of(self.entry, self.choices.profiled)
-        rated = rated_from_catalogue(self.entry_name, *catalogues, **profile)
+        rated = rated_from_catalogue(self.named, *catalogues, **profile)
         paths = {level.value: self._path(rated, of) for level, of in here.items()}
         of = here[LEVELS[-1]]
         return OneBearing(
             self.name,
-            self.entry_name,
+            name_of(self.named),
             self.entry,
             rated,
             paths[LEVELS[-1].value],
@@ -275,24 +275,14 @@ class _Maker:
         return ReactionPath(self.name, rated, of.by_hub, weight, of.speed_ratio)
 
 
-def entry_of(name: str, entry: str, known: Mapping[str, Entry]) -> Entry:
-    """The entry of a bearing."""
-    if entry not in known:
-        raise InputError(
-            f"catalogue entry {shown(entry)} of bearing {name!r} is in no catalogue: give a file "
-            f"that has it with {argument('catalogues', ['FILE'])}, or use one of {', '.join(known)}"
-        )
-    return known[entry]
-
-
-def require_bearings(names: Sequence[str], entries: Mapping[str, str], only: str | None) -> None:
+def require_bearings(names: Sequence[str], entries: Mapping[str, Named], only: str | None) -> None:
     """Refuse names of bearings that there are not, and to ask for one that cannot be rated."""
     known = f"name one of {', '.join(names)}"
     for name in entries:
         if name not in names:
             raise InputError(
-                f"{argument('LifeOptions.bearings', {name: entries[name]})}: the drivetrain has no "
-                f"bearing {name!r}; {known}"
+                f"{argument('LifeOptions.bearings', {name: name_of(entries[name])})}: the "
+                f"drivetrain has no bearing {name!r}; {known}"
             )
     if only is not None and only not in names:
         raise InputError(

@@ -139,8 +139,42 @@ def ratios(
     ratios : Floats
         (len(ifs),) from a sample of a hundredth of the steps; 1 where none does damage.
     """
+    return np.asarray(effects(one, rules, ifs, loads, speed_rpm, weights)[:, 1])
+
+
+def effects(
+    one: OneBearing,
+    rules: LifeRules,
+    ifs: Sequence[WhatIf],
+    loads: PointLoads,
+    speed_rpm: Floats,
+    weights: Floats,
+) -> Floats:
+    """Damage and pressure with each of the other values, over those that are taken.
+
+    Parameters
+    ----------
+    one : OneBearing
+        The bearing.
+    rules : LifeRules
+        Choices.
+    ifs : sequence of WhatIf
+        Other values.
+    loads : PointLoads
+        Load steps as they enter the body, (n, 6) or more [N, N m].
+    speed_rpm : Floats
+        (n,) [1/min].
+    weights : Floats
+        (n,) as in `ratios`.
+
+    Returns
+    -------
+    effects : Floats
+        (len(ifs), 3) damage by L10r, by L10mr, and largest contact pressure, from a sample of a
+        hundredth of the steps; 1 where there is none.
+    """
     if not ifs or not weights.any():
-        return np.ones(len(ifs))
+        return np.ones((len(ifs), 3))
     part, seconds = sampled(weights)
     taken = list(one.path.steps(loads[part], speed_rpm[part], seconds))
     found = []
@@ -152,11 +186,15 @@ def ratios(
             there = list(
                 one.path_with(other.rated.bearing).steps(loads[part], speed_rpm[part], seconds)
             )
-        before = after = 0.0
+        before, after = np.zeros(3), np.zeros(3)
         for mine, its in _balanced(taken, there):
-            before += damage_of_steps(mine, one.rated, rules).totals["L10mr"]
-            after += damage_of_steps(its, other.rated, other.rules).totals["L10mr"]
-        found.append(after / before if before else 1.0)
+            for sums, done in (
+                (before, damage_of_steps(mine, one.rated, rules)),
+                (after, damage_of_steps(its, other.rated, other.rules)),
+            ):
+                sums[:2] += done.of_bearing
+                sums[2] = max(sums[2], done.limits.max_pressure)
+        found.append(np.divide(after, before, out=np.ones(3), where=before > 0.0))
     return np.array(found)
 
 

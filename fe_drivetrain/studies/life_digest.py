@@ -28,6 +28,7 @@ from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.response.cached import whole_content
 from fe_drivetrain.shafts.response.entering import Entered, entering
 from fe_drivetrain.studies.life_assumptions import ratios, what_ifs
+from fe_drivetrain.studies.life_inside import inside_effects
 from fe_drivetrain.studies.life_series import has_series, series_values
 from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 from fe_drivetrain.studies.unused import RPM, own_speeds, require_samples
@@ -104,6 +105,9 @@ class LifeDigest:
     series : Floats
         Time [s], and the columns of `life_series.series_columns` over it; empty where none is
         asked for.
+    inside : Floats
+        What other insides do that fit the bearing's page, see
+        `fe_drivetrain.studies.life_inside`.
     """
 
     damage: Damage
@@ -121,6 +125,7 @@ class LifeDigest:
     levels: Floats
     flanges: float
     series: Floats
+    inside: Floats
 
 
 def content(
@@ -243,6 +248,7 @@ def digest(
         levels=levels,
         flanges=flanges,
         series=sums.over_time(history.time[:: reading.every]),
+        inside=inside_effects(one, own, choices, loads, speed, sums.weights),
     )
 
 
@@ -436,6 +442,7 @@ class _Sums:
             np.zeros(0),
             np.zeros(0),
             0.0,
+            np.zeros((0, 0)),
             np.zeros((0, 0)),
         )
 

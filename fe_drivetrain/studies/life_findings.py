@@ -68,6 +68,20 @@ def answers(
         )
 
 
+def _insides(found: Findings, lives: Sequence[BearingLife]) -> None:
+    """State bands of lives of bearings that are given by their catalogue's page."""
+    for life in lives:
+        band = life.inside
+        if band is None or not np.isfinite(life.years["L10mr"]):
+            continue
+        low, high = band.years["L10mr"]
+        ends = f"{in_years(low)} to {in_years(high)}"
+        found.note(
+            f"Bearing {life.name}: its page does not print what is inside. With {band.insides} "
+            f"insides that fit it, L10mr is {ends}; give what is known of the inside to narrow it."
+        )
+
+
 def _loads(life: BearingLife) -> tuple[str, ...]:
     """The design load that lives of a bearing are values of: one of a gearbox has its oil."""
     return (TORQUE_AND_BENDING if life.bearing.oil is None else BEARING_RATING,)
@@ -147,6 +161,7 @@ def cautions(
     for life, row in zip(lives, limits, strict=True):
         _beyond_limits(found, life, row)
     _beyond_limits_together(found, lives, limits)
+    _insides(found, lives)
     for life in _spoken_of(lives):
         if sentence := in_words(life.name, life.years["L10mr"], life.assumptions):
             found.note(sentence)

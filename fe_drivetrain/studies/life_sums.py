@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.studies.life_assumptions import Assumption, what_ifs
 from fe_drivetrain.studies.life_digest import LifeDigest, worse
+from fe_drivetrain.studies.life_inside import InsideBand, inside_band
 from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 from fe_drivetrain.turbine_loads.histories.sites import Site, require_winds, rounded_wind
 
@@ -47,6 +48,8 @@ class FileLife:
         Damage by L10 at each level of the drivetrain's statics, over that of the one taken.
     flanges : float
         Largest axial force that rolling elements do not carry [N].
+    inside : ndarray, (insides, 4)
+        What other insides do that fit its page, see `fe_drivetrain.studies.life_inside`.
     """
 
     file: Path
@@ -59,6 +62,7 @@ class FileLife:
     ratios: Floats
     levels: Floats
     flanges: float
+    inside: Floats
 
     __repr__ = short_repr
 
@@ -145,6 +149,9 @@ class BearingLife:
     levels : Mapping[str, float]
         Constant load of the same L10 at each level of the drivetrain's statics over that of the
         level taken; none of a bearing whose rollers are in equilibrium with the shaft.
+    inside : InsideBand or None
+        Lives, pressure and stiffness over the insides that fit its catalogue's page; None of a
+        bearing whose inside is stated.
     """
 
     bearing: OneBearing
@@ -159,6 +166,7 @@ class BearingLife:
     assumptions: tuple[Assumption, ...]
     by_wind: tuple[WindLoads, ...]
     levels: Mapping[str, float]
+    inside: InsideBand | None = None
 
     def __repr__(self) -> str:
         """One line: the bearing, and its life of each kind."""
@@ -257,6 +265,7 @@ class BearingSums:
                 digest.ratios,
                 digest.levels,
                 digest.flanges,
+                digest.inside,
             )
         )
 
@@ -306,6 +315,7 @@ class BearingSums:
                 name: self._load_at(i, damage.totals["L10"])
                 for i, name in enumerate(self._bearing.levels)
             },
+            self._inside(),
         )
 
     def _load_at(self, level: int, used: float) -> float:
@@ -322,12 +332,25 @@ class BearingSums:
 
     def _years_with(self, i: int) -> float:
         """L10mr with another value of the i-th assumption [years]."""
+        return self._lives_with([np.array([1.0, one.ratios[i]]) for one in self._files])["L10mr"]
+
+    def _lives_with(self, ratios: Sequence[Floats]) -> Mapping[str, float]:
+        """Lives [years] with so many times the damage by L10r and by L10mr of each file."""
         changed = [
-            (rounded_wind(one.wind), _with_ratio(one.damage, float(one.ratios[i])))
-            for one in self._files
+            (rounded_wind(one.wind), _with_ratios(one.damage, ratio))
+            for one, ratio in zip(self._files, ratios, strict=True)
         ]
         damage, at_site = _together(changed, self._site)
-        return (damage.lives("years") if at_site is None else at_site.years)["L10mr"]
+        return damage.lives("years") if at_site is None else at_site.years
+
+    def _inside(self) -> InsideBand | None:
+        """Bands over the insides that fit the bearing's page."""
+        if not self._files[0].inside.size:
+            return None
+        effects = np.stack([one.inside for one in self._files])
+        lives = [self._lives_with(list(effects[:, k, :2])) for k in range(effects.shape[1])]
+        pressures = [one.damage.limits.max_pressure for one in self._files]
+        return inside_band(self._bearing, lives, effects, np.array(pressures))
 
 
 def _together(
@@ -343,9 +366,9 @@ def _together(
     return whole, None
 
 
-def _with_ratio(damage: Damage, ratio: float) -> Damage:
-    """The damage, with so many times its own by L10mr."""
-    return replace(damage, of_bearing=damage.of_bearing * [1.0, ratio])
+def _with_ratios(damage: Damage, ratios: Floats) -> Damage:
+    """The damage, with so many times its own by L10r and by L10mr."""
+    return replace(damage, of_bearing=damage.of_bearing * ratios)
 
 
 def scatter(life: BearingLife, kind: str = "L10mr") -> float | None:

@@ -89,6 +89,37 @@ def assumption_rows(lives: Sequence[BearingLife]) -> list[Record]:
     return rows
 
 
+def inside_rows(lives: Sequence[BearingLife]) -> list[Record]:
+    """What follows for bearings by their catalogue's page from the insides that fit it."""
+    rows: list[Record] = []
+    for life in lives:
+        band = life.inside
+        if band is None:
+            continue
+        words = f"of {band.insides} insides"
+        of = life.limits.max_pressure
+        taken, *ends = band.stiffness
+        values: list[tuple[str, float | None, tuple[float, float]]] = [
+            *((f"{kind} [years]", life.years[kind], band.years[kind]) for kind in band.years),
+            ("max pressure [MPa]", 1e-6 * of, (1e-6 * band.pressure[0], 1e-6 * band.pressure[1])),
+            ("radial stiffness [MN/mm]", 1e-9 * taken, (1e-9 * ends[0], 1e-9 * ends[1])),
+            ("C of ISO 281 over that printed [-]", None, band.rated),
+            ("Cu of ISO 281 over that printed [-]", None, band.limited),
+        ]
+        rows += [
+            {
+                "bearing": life.name,
+                "quantity": name,
+                "inside taken": value,
+                f"least {words}": low,
+                f"largest {words}": high,
+            }
+            for name, value, (low, high) in values
+            if not np.isnan(low)
+        ]
+    return rows
+
+
 def file_rows(lives: Sequence[BearingLife]) -> list[Record]:
     """Lives and limits of each bearing under each file alone."""
     rows: list[Record] = []
@@ -320,6 +351,8 @@ def result_tables(lives: Sequence[BearingLife], machine: MachineBearings) -> dic
         tables["levels"] = levels
     if assumed := assumption_rows(lives):
         tables["assumed"] = assumed
+    if insides := inside_rows(lives):
+        tables["insides"] = insides
     tables["load_zones"] = [
         {"bearing": life.name, "mean load [N]": life.mean_load, "max load [N]": life.peak_load}
         for life in lives

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import prod
 
+from fe_drivetrain.bearing.catalogue_page import entry_name
 from fe_drivetrain.common.typeset import with_prefix
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.gear_stages import ParallelData, PlanetaryData
@@ -148,7 +149,7 @@ def turning_tables(turning: Turning) -> dict[str, list[Record]]:
             "holds": f"stage {number} planets",
             "at [m]": pin.offset,
             "stiffness": _springs(pin.stiffness),
-            "catalogue": pin.catalogue,
+            "catalogue": entry_name(pin.catalogue),
         }
         for number, stage in enumerate(machine.stages, start=1)
         if isinstance(stage, PlanetaryData)
@@ -171,7 +172,7 @@ def turning_tables(turning: Turning) -> dict[str, list[Record]]:
             "holds": bearing.holds,
             "at [m]": bearing.at,
             "stiffness": _springs(bearing.stiffness),
-            "catalogue": bearing.catalogue,
+            "catalogue": entry_name(bearing.catalogue),
         }
         for bearing in machine.bearings
     ]

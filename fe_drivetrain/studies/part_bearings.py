@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
+from fe_drivetrain.bearing.catalogue import name_of, read_bearing_catalogue
 from fe_drivetrain.bearing_life.life.rated import rated_from_catalogue
 from fe_drivetrain.bearing_life.life.reference_life import Turning
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
@@ -12,10 +12,10 @@ from fe_drivetrain.dynamics.bodies.catalogue_seats import main_names
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.studies.gearbox_bearings import (
     catalogue_entries,
-    entry_of,
     require_bearings,
 )
 from fe_drivetrain.studies.life_options import LifeOptions
+from fe_drivetrain.studies.named_bearings import entry_of
 from fe_drivetrain.studies.part_loads import CountedParts, ForcedBearing
 from fe_drivetrain.studies.rolling_bearings import own_rules, profile_of
 
@@ -60,7 +60,11 @@ def counted_parts(
     require_bearings(names, entries, choices.only)
     known, main = read_bearing_catalogue(*choices.catalogues), main_names(machine)
     if not strict:
-        entries = {name: entry for name, entry in entries.items() if entry in known}
+        entries = {
+            name: entry
+            for name, entry in entries.items()
+            if not isinstance(entry, str) or entry in known
+        }
     oil = options.oil(drivetrain.operation)
     found = []
     for name in names:
@@ -73,6 +77,6 @@ def counted_parts(
         if name not in main:
             turning = "outer" if name in planets else "inner"
         own = own_rules(rules, turning, None if name in main else oil)
-        found.append(ForcedBearing(name, entries[name], entry, rated, own))
+        found.append(ForcedBearing(name, name_of(entries[name]), entry, rated, own))
     others = tuple(name for name in names if name not in entries)
     return CountedParts(tuple(found), rollers), others

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from fe_drivetrain.bearing.catalogue import Entry, read_bearing_catalogue
+from fe_drivetrain.bearing.catalogue import Entry, Named, name_of, read_bearing_catalogue
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow
 from fe_drivetrain.bearing.races import Races
 from fe_drivetrain.bearing_life.coupled.load_paths import PINNED, LoadPath
@@ -65,7 +65,7 @@ class Choices:
         Options that were not given: their defaults are assumptions.
     """
 
-    named: Mapping[str, str]
+    named: Mapping[str, Named]
     catalogues: Sequence[Path]
     profiled: bool
     support: str | float
@@ -214,14 +214,14 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
     named = _all_named(scene, choices)
     rated = {
         name: rated_from_catalogue(
-            one.name, *choices.catalogues, **profile_of(one.entry, choices.profiled)
+            one.named, *choices.catalogues, **profile_of(one.entry, choices.profiled)
         )
         for name, one in named.items()
     }
     rolling = {name: one.bearing for name, one in rated.items()}
     body = scene_body(scene, 1)
     result = []
-    for name, (entry_name, entry, seat, misfit) in named.items():
+    for name, (entry_name, entry, seat, misfit, _) in named.items():
         if choices.only not in (None, name):
             continue
         rollers = _rollers(scene, name, rolling[name], choices.rings)
@@ -247,8 +247,8 @@ def _require_choices(scene: Scene, choices: Choices) -> None:
     units = [unit.bearing.name for unit in scene.bearing_units]
     if wrong := [name for name in choices.named if name not in units]:
         raise InputError(
-            f"{_named(wrong[0], choices.named[wrong[0]])}: the scene has no bearing {wrong[0]!r}; "
-            f"name one of {', '.join(units)}"
+            f"{_named(wrong[0], name_of(choices.named[wrong[0]]))}: the scene has no bearing "
+            f"{wrong[0]!r}; name one of {', '.join(units)}"
         )
     if choices.only is not None and choices.only not in units:
         raise InputError(

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Literal
 
+from fe_drivetrain.bearing.catalogue_page import entry_name
 from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.typeset import with_prefix
 from fe_drivetrain.drivetrain_file.bearing_unit import SPHERICAL_JOINTS, BearingUnit
@@ -157,7 +158,7 @@ def _bearing_row(unit: BearingUnit) -> Record:
         if unit.interface == "bonded"
         else "as its stiffness says",
         "stands on": "the ground" if unit.bedplate is None else springs_in_words(unit.bedplate),
-        "rolling bearing": unit.catalogue,
+        "rolling bearing": entry_name(unit.catalogue),
     }
 
 

@@ -13,6 +13,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
+    from fe_drivetrain.bearing.catalogue import Named
     from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
     from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
 
@@ -81,6 +82,7 @@ def choices_not_used(
         Whose lives are asked for.
     """
     # late, since it loads the compiled loops of bearings
+    from fe_drivetrain.bearing.catalogue import name_of
     from fe_drivetrain.studies.gearbox_bearings import catalogue_entries
 
     stated = catalogue_entries(drivetrain)
@@ -88,7 +90,7 @@ def choices_not_used(
         if stated.get(name, named) != named:
             yield (
                 f"{argument('LifeOptions.bearings', {name: named})} takes the place of the entry "
-                f"{stated[name]!r} that the scene names under catalogue."
+                f"{name_of(stated[name])!r} that the scene names under catalogue."
             )
     if "profile" not in choices.assumed:
         option = argument("LifeOptions.profile", choices.profiled)
@@ -101,14 +103,14 @@ def choices_not_used(
     yield from catalogues_not_used(choices.catalogues, {**stated, **choices.named})
 
 
-def catalogues_not_used(catalogues: Sequence[Path], named: Mapping[str, str]) -> Iterator[str]:
+def catalogues_not_used(catalogues: Sequence[Path], named: Mapping[str, Named]) -> Iterator[str]:
     """Entries of the user's catalogues that shadow others, and files that are not used.
 
     Parameters
     ----------
     catalogues : sequence of Path
         Files of the user, later ones before earlier ones.
-    named : Mapping[str, str]
+    named : Mapping[str, str or CataloguePage]
         Entry by bearing, of those bearings that have one.
 
     Yields
@@ -121,19 +123,20 @@ def catalogues_not_used(catalogues: Sequence[Path], named: Mapping[str, str]) ->
     # late, since it loads the compiled loops of bearings
     from fe_drivetrain.bearing.catalogue import read_bearing_catalogue, read_entries
 
+    names = {entry for entry in named.values() if isinstance(entry, str)}
     known, of = (
         read_bearing_catalogue(),
         dict.fromkeys(read_bearing_catalogue(), "the program's own catalogue"),
     )
     for path in catalogues:
         entries = read_entries(path)
-        for name in sorted(set(named.values()) & set(entries)):
+        for name in sorted(names & set(entries)):
             if name in known and known[name] != entries[name]:
                 yield f"Entry {name!r} of {path} takes the place of that of {of[name]}."
         known |= entries
         of |= dict.fromkeys(entries, str(path))
     for path in dict.fromkeys(catalogues):
-        if not {entry for entry in named.values() if of.get(entry) == str(path)}:
+        if not {entry for entry in names if of.get(entry) == str(path)}:
             yield (
                 f"{argument('catalogues', [str(path)])} is not used: no bearing of the scene takes "
                 f"an entry of it, which are {', '.join(read_entries(path))}: name one under "

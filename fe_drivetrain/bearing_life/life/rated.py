@@ -8,14 +8,16 @@ for (`fe_drivetrain.bearing_life.life.roller_damage`).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import degrees, tan
+from math import degrees, radians, tan
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.bearing.catalogue import catalogue_entry
+from fe_drivetrain.bearing.catalogue import Entry, Named, catalogue_entry, name_of
+from fe_drivetrain.bearing.catalogue_page import CataloguePage
+from fe_drivetrain.bearing.fitted_rollers import B_M
 from fe_drivetrain.bearing.geometry import BallRow, Bearing
 from fe_drivetrain.bearing.rating import ball_dynamic_rating, ratings
 from fe_drivetrain.common.arrays import Floats
@@ -90,6 +92,8 @@ class RatedBearing:
         Factor f_0 of deep grooves.
     limiting_speed_rpm : float or None
         Limiting speed of a catalogue [1/min].
+    mean_diameter : float or None
+        Mean of bore and outside diameter of a catalogue's page [m], in place of the pitch diameter.
     """
 
     bearing: Bearing
@@ -100,6 +104,7 @@ class RatedBearing:
     factors: Factors | None = None
     f_0: float = F_0
     limiting_speed_rpm: float | None = None
+    mean_diameter: float | None = None
 
     def __post_init__(self) -> None:
         if len({isinstance(row, BallRow) for row in self.bearing.rows}) > 1:
@@ -135,8 +140,8 @@ class RatedBearing:
 
     @property
     def pitch_diameter(self) -> float:
-        """D_pw [m]."""
-        return 2.0 * self.bearing.arm
+        """D_pw of lubrication and speed [m]."""
+        return 2.0 * self.bearing.arm if self.mean_diameter is None else self.mean_diameter
 
     def equivalent_load(self, loads: ArrayLike) -> Floats:
         """Dynamic equivalent load P of ISO 281.
@@ -286,13 +291,13 @@ def ball_static_rating(bearing: Bearing) -> float:
     return float(F_0 * sum(bearing.counts) * (1e3 * row.diameter) ** 2 * np.cos(row.angle))
 
 
-def rated_from_catalogue(name: str, *more: str | Path, **changes: Any) -> RatedBearing:
+def rated_from_catalogue(name: Named, *more: str | Path, **changes: Any) -> RatedBearing:
     """A bearing of a catalogue with the ratings that it prints, and those from its rollers.
 
     Parameters
     ----------
-    name : str
-        Name of the entry.
+    name : str or CataloguePage
+        Name of the entry, or a page, whose ratings and factors are then taken alone.
     *more : str or Path
         Catalogue files beside the package's.
     **changes : Any
@@ -308,14 +313,65 @@ def rated_from_catalogue(name: str, *more: str | Path, **changes: Any) -> RatedB
     InputError
         No such entry, or values that do not fit.
     """
-    entry = catalogue_entry(name, *more, **changes)
+    return rated_entry(catalogue_entry(name, *more, **changes), name_of(name))
+
+
+def rated_entry(entry: Entry, name: str) -> RatedBearing:
+    """An entry of a catalogue with the ratings that it prints, and those from its rollers.
+
+    Parameters
+    ----------
+    entry : Entry
+        The entry. One of a catalogue's page has the factors of the page, and its mean diameter.
+    name : str
+        Name of the bearing.
+
+    Raises
+    ------
+    InputError
+        The rows differ from each other, or are beyond the tables of the standards.
+    """
     printed = entry.ratings.model_dump() if entry.ratings else {}
-    b_m = 1.15 if entry.kind == "spherical_roller" else 1.1
-    rated = rated_bearing(
-        entry.bearing(name), printed.get("C"), printed.get("C0"), printed.get("Cu"), b_m=b_m
-    )
+    ratings_of = (printed.get("C"), printed.get("C0"), printed.get("Cu"))
+    b_m = B_M.get(entry.kind, 1.1)
+    rated = rated_bearing(entry.bearing(name), *ratings_of, b_m=b_m)
     source = entry.sources.get("ratings", "given")
     words = [source if text == "given" else text for text in rated.sources]
-    return replace(
+    found = replace(
         rated, sources=(words[0], words[1], words[2]), limiting_speed_rpm=entry.limiting_speed_rpm
     )
+    page = entry.page
+    if page is None:
+        return found
+    return replace(
+        found,
+        factors=page_factors(page),
+        f_0=F_0 if page.f0 is None else page.f0,
+        mean_diameter=page.mean_diameter,
+    )
+
+
+def page_factors(page: CataloguePage) -> Factors | None:
+    """X, Y and e as a catalogue's page prints them, what is left out by the contact angle.
+
+    Parameters
+    ----------
+    page : CataloguePage
+        The page.
+
+    Returns
+    -------
+    factors : Factors or None
+        None where the page says nothing of axial loads, and of deep grooves, whose factors follow
+        the load.
+    """
+    if page.e is None and page.Y is None and page.Y1 is None and page.Y2 is None:
+        return None
+    if page.of_kind == "ball" or page.angle is None:
+        return None
+    e = page.e if page.e is not None else 1.5 * tan(radians(page.angle))
+    if page.rows == 1:
+        Y, Y0 = page.Y or 0.6 / e, page.Y0 or 0.33 / e
+        return Factors(e, (1.0, 0.0), (0.4, Y), (0.5, Y0))
+    Y1, Y2, Y0 = page.Y1 or 0.675 / e, page.Y2 or 1.005 / e, page.Y0 or 0.66 / e
+    return Factors(e, (1.0, Y1), (0.67, Y2), (1.0, Y0))

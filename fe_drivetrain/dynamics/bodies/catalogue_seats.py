@@ -140,7 +140,8 @@ def bearing_of(row: BearingData | PinData, catalogues: Sequence[str | Path] = ()
         It is in no catalogue.
     """
     changes = {} if row.clearance is None else {"clearance": row.clearance}
-    return catalogue_bearing(str(row.catalogue), *catalogues, **changes)
+    assert row.catalogue is not None  # of `catalogued`
+    return catalogue_bearing(row.catalogue, *catalogues, **changes)
 
 
 def _of_planets(

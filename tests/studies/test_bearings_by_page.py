@@ -1,0 +1,108 @@
+"""Lives of a drivetrain's bearings that are given by their catalogue's page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fe_drivetrain.bearing.catalogue_page import CataloguePage
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.reading import changed
+from fe_drivetrain.drivetrain_file.reading import library_scene
+from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.turning_parts import BearingData
+from fe_drivetrain.dynamics.bodies.catalogue_seats import bearing_of
+from fe_drivetrain.studies.bearing_lives import LifeResult, life
+from fe_drivetrain.studies.life_options import LifeOptions
+from fe_drivetrain.turbine_loads.hub_loads.csv_table import write_hub_loads
+from fe_drivetrain.turbine_loads.hub_loads.surrogate import Condition, hub_load_set
+
+PAGE: dict[str, Any] = {
+    "designation": "230/600",
+    "C": 6.0e6,
+    "C0": 1.14e7,
+    "Cu": 7.5e5,
+    "e": 0.22,
+    "Y1": 3.0,
+    "Y2": 4.6,
+    "Y0": 2.8,
+}
+
+
+def scene_with(page: dict[str, Any]) -> Scene:
+    return changed(
+        library_scene("three_point_suspension"), {"bearing_units.0.catalogue": page}, "test"
+    )
+
+
+@pytest.fixture(scope="module")
+def loads(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    (history,) = hub_load_set([Condition(12.0, "low", shear=0.2, seed=1)], 12.0, 5.0)
+    path = tmp_path_factory.mktemp("loads") / "w12.csv"
+    write_hub_loads(history, path)
+    return path
+
+
+def life_of(page: dict[str, Any], loads: Path, support: str = "rollers") -> LifeResult:
+    options = LifeOptions(rotor_speed_rpm=12.0, support=support)
+    return life(scene_with(page), loads, options=options)
+
+
+@pytest.fixture(scope="module")
+def by_page(loads: Path) -> LifeResult:
+    return life_of(PAGE, loads)
+
+
+def test_bands_hold_the_inside_that_is_taken(by_page: LifeResult) -> None:
+    one = by_page.bearings["main_bearing"]
+    band = one.inside
+    assert band is not None
+    for kind, (low, high) in band.years.items():
+        assert low < one.years[kind] < high
+    assert band.pressure[0] <= one.limits.max_pressure <= band.pressure[1]
+    taken, low, high = band.stiffness
+    assert low <= taken <= high
+    assert len(by_page.tables["insides"]) == 6
+    assert any("does not print what is inside" in note for note in by_page.notes)
+
+
+def test_lives_of_iso_281_follow_from_the_page_alone(loads: Path) -> None:
+    # pinned: on its rollers the shaft gives a stiffer bearing more of the load
+    known = {**PAGE, "elements": 24, "pitch_diameter": 0.75}
+    one, other = (life_of(page, loads, "pinned").bearings["main_bearing"] for page in (PAGE, known))
+    assert one.rows != other.rows
+    for kind in ("L10", "L10m"):
+        assert one.years[kind] == pytest.approx(other.years[kind], rel=1e-12)
+    assert one.years["L10r"] != pytest.approx(other.years["L10r"], rel=1e-6)
+    assert one.inside is not None
+    assert other.inside is not None
+    spans = [found.stiffness[2] / found.stiffness[1] for found in (other.inside, one.inside)]
+    assert spans[0] < spans[1]  # what is known narrows the band
+
+
+def test_scene_with_a_page_is_the_same_when_it_is_read_again() -> None:
+    scene = scene_with(PAGE)
+    assert isinstance(scene.bearing_units[0].catalogue, CataloguePage)
+    assert Scene.model_validate(scene.model_dump(mode="json")) == scene
+
+
+def test_faults_of_a_page_in_a_scene_come_together() -> None:
+    with pytest.raises(InputError, match=r"2 faults: .*C is 6000 N .*e is 0.9 and Y1 3"):
+        scene_with({**PAGE, "C": 6000, "e": 0.9, "Y2": None})
+
+
+def test_bearing_of_a_gearbox_takes_a_page_with_the_clearance_of_its_row() -> None:
+    row = BearingData.model_validate(
+        {
+            "name": "HSS-A",
+            "holds": "stage 2 pinion",
+            "stiffness": [0, 6e8, 6e8, 0, 0, 0],
+            "catalogue": {"designation": "NU 2220", "C": 3.8e5, "C0": 4.5e5, "Cu": 5.4e4},
+            "clearance": 4e-5,
+        }
+    )
+    found = bearing_of(row)
+    assert found.name == "NU 2220"
+    assert [one.clearance for one in found.rows] == [4e-5]
