@@ -15,6 +15,7 @@ from pydantic import (
     model_validator,
 )
 
+from fe_drivetrain.bearing.mounting import Mounting
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.strict_yaml import no_truth_value, shown
@@ -125,6 +126,10 @@ class BearingUnit(Keys):
         min_length=1,
         max_length=100,
         description="name of its rolling bearing in a bearing catalogue, for lives",
+    )
+    mounting: Mounting | None = Field(
+        default=None,
+        description="clearance before mounting, fits and temperatures of its rolling bearing",
     )
 
     @property

@@ -291,11 +291,11 @@ def main_bearings(
     return tuple(found)
 
 
-def _entry_of(scene: Scene, name: str) -> dict[str, str]:
-    """The catalogue entry of a bearing unit, where it has one."""
+def _entry_of(scene: Scene, name: str) -> dict[str, Any]:
+    """The catalogue entry of a bearing unit and its mounting, where it has them."""
     for unit in scene.bearing_units:
         if unit.bearing.name == name and unit.catalogue is not None:
-            return {"catalogue": unit.catalogue}
+            return {"catalogue": unit.catalogue, "mounting": unit.mounting}
     return {}
 
 

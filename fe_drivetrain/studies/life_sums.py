@@ -145,6 +145,8 @@ class BearingLife:
     levels : Mapping[str, float]
         Constant load of the same L10 at each level of the drivetrain's statics over that of the
         level taken; none of a bearing whose rollers are in equilibrium with the shaft.
+    clearances : tuple of Assumption
+        L10mr with other clearances, those of its band among them.
     """
 
     bearing: OneBearing
@@ -159,6 +161,7 @@ class BearingLife:
     assumptions: tuple[Assumption, ...]
     by_wind: tuple[WindLoads, ...]
     levels: Mapping[str, float]
+    clearances: tuple[Assumption, ...] = ()
 
     def __repr__(self) -> str:
         """One line: the bearing, and its life of each kind."""
@@ -285,6 +288,12 @@ class BearingSums:
             limits = limits + one.damage.limits
         seconds = sum(one.damage.seconds for one in self._files)
         ifs = what_ifs(self._bearing, self._bearing.rules(rules), choices)
+        others = [
+            Assumption(
+                other.assumed, other.instead, self._years_with(i), other.clearance, other.stated
+            )
+            for i, other in enumerate(ifs)
+        ]
         return BearingLife(
             self._bearing,
             tuple(self._files),
@@ -295,10 +304,7 @@ class BearingSums:
             self._peak,
             self._pressures,
             self._worst,
-            tuple(
-                Assumption(other.assumed, other.instead, self._years_with(i))
-                for i, other in enumerate(ifs)
-            ),
+            tuple(one for one in others if not one.stated),
             tuple(self._winds[wind] for wind in sorted(self._winds))
             if np.isfinite(list(self._winds)).all()
             else (),
@@ -306,6 +312,7 @@ class BearingSums:
                 name: self._load_at(i, damage.totals["L10"])
                 for i, name in enumerate(self._bearing.levels)
             },
+            tuple(one for one in others if one.clearance is not None),
         )
 
     def _load_at(self, level: int, used: float) -> float:
