@@ -45,11 +45,19 @@ def unit_clearance(scene: Scene, name: str, entry: Entry) -> OperatingClearance 
     fit = mounting.fit
     if fit is not None:
         mounting = mounting.model_copy(update={"fit": _with_seats(scene, name, fit)})
+    warm = mounting.temperatures
+    if warm is not None:
+        housing = next((part for part in unit.housing_parts if part.endswith(".housing")), name)
+        stated = {"shaft": scene.temperatures.get("shaft")}
+        stated["housing"] = scene.temperatures.get(housing)
+        own = {key: value for key, value in stated.items() if getattr(warm, key) is None}
+        mounting = mounting.model_copy(update={"temperatures": warm.model_copy(update=own)})
     parts = (name, "shaft", *(part for part in unit.housing_parts if part.endswith(".housing")))
-    warm = mounting.temperatures is not None
-    rings, shaft, *housing = (_ring(scene.material_of(part), part, warm) for part in parts)
+    rings, shaft, *seats = (
+        _ring(scene.material_of(part), part, warm is not None) for part in parts
+    )
     try:
-        return entry_clearance(entry, mounting, shaft, housing[0] if housing else rings, rings)
+        return entry_clearance(entry, mounting, shaft, seats[0] if seats else rings, rings)
     except InputError as error:
         raise InputError(f"bearing {name!r}: {error}") from None
 

@@ -49,6 +49,11 @@ class Hub(Keys):
     )
 
 
+#: What temperatures of parts are above.
+ASSEMBLED = "assembled"
+
+Temperature = Annotated[float, Field(ge=-60, le=250)]
+
 Inertia = Annotated[float, Field(gt=0, le=MAX_INERTIA)]
 
 
@@ -136,11 +141,17 @@ class Scene(Drivetrain):
     materials: Mapping[str, Material] = {}
     mesh: MeshSizes = MeshSizes()
     uncertainty: Mapping[str, Spread] = {}
+    temperatures: Mapping[str, Temperature] = Field(
+        default={},
+        description="temperature of parts by their names, 'shaft', 'NAME' of a bearing and "
+        "'NAME.housing' [degC]; 'assembled' is that of all others, 20 if left out",
+    )
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
         check_scene(self, self.gearbox.stiffness, [point.name for point in self.load_points])
         check_spreads(self, self.uncertainty)
+        check_temperatures(self)
         if self.states_gears or self.limits:
             check_turning(self, main_shaft(self), main_bearings(self))
         return self
@@ -170,6 +181,12 @@ class Scene(Drivetrain):
         if unit.condensed is not None:
             raise InputError(f"{part} is a stiffness alone, and has no material: leave it out")
         return unit.housing_parts[part].material
+
+    def free_strain(self, part: str) -> float:
+        """Strain of a part that is free to expand, by its temperature."""
+        assembled = self.temperatures.get(ASSEMBLED, 20.0)
+        warmer = self.temperatures.get(part, assembled) - assembled
+        return warmer * self.material_of(part).expansion(part) if warmer else 0.0
 
     @property
     def blocks(self) -> dict[str, Housing]:
@@ -236,6 +253,35 @@ class Scene(Drivetrain):
         """Diameter of the shaft under the bearing of a unit [m]: all that the unit knows of it."""
         bearing = self.bearing_unit(name).bearing
         return self.shaft.seat_diameter(bearing.x, bearing.width, name)
+
+
+def check_temperatures(scene: Scene) -> None:
+    """Refuse temperatures of parts that there are not, or that cannot expand.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+
+    Raises
+    ------
+    InputError
+    """
+    parts = ["shaft"]
+    for unit in scene.bearing_units:
+        parts += [unit.bearing.name, *unit.housing_parts]
+    for name in scene.temperatures:
+        if name not in (ASSEMBLED, *parts):
+            raise InputError(
+                f"temperatures: the scene has no part {shown(name)}: name one of "
+                f"{', '.join(parts)}, or '{ASSEMBLED}'"
+            )
+    if scene.temperatures and scene.nose is not None:
+        raise InputError(
+            "temperatures of a scene with a nose are not computed: leave one of both out"
+        )
+    for part in parts:
+        scene.free_strain(part)
 
 
 #: A joint or a mount that holds rigidly, as a spring [N/m, N m/rad]: a hundred times and more what

@@ -35,6 +35,7 @@ from fe_drivetrain.studies.named_bearings import NamedBearing, named_bearings
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.scene_description import description
 from fe_drivetrain.studies.solved_assembly import checked_model
+from fe_drivetrain.studies.thermal_tables import thermal_tables
 from fe_drivetrain.studies.unused import catalogues_not_used
 
 
@@ -128,6 +129,7 @@ def check(
         parts=parts,
         described=description(model)
         | _clearances(found, scene, named)
+        | thermal_tables(scene)
         | (turning_tables(turning) if turning else {}),
         costs=costs,
         model=model,
