@@ -16,6 +16,7 @@ from pydantic import (
 )
 
 from fe_drivetrain.bearing.catalogue_page import EntryOrPage
+from fe_drivetrain.bearing.mounting import Mounting
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.strict_yaml import no_truth_value, shown
@@ -124,6 +125,10 @@ class BearingUnit(Keys):
     catalogue: EntryOrPage | None = Field(
         default=None,
         description="its rolling bearing, for lives: name in a bearing catalogue, or a page of one",
+    )
+    mounting: Mounting | None = Field(
+        default=None,
+        description="clearance before mounting, fits and temperatures of its rolling bearing",
     )
 
     @property

@@ -5,6 +5,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.strict_yaml import no_truth_value, shown
 
 MAX_POISSON_RATIO = 0.499999
@@ -30,6 +31,12 @@ class Material(BaseModel):
         float, Field(gt=-1, le=MAX_POISSON_RATIO, description="Poisson's ratio nu [-]")
     ]
     density: Annotated[float, Field(ge=0, le=1e5, description="density rho [kg/m^3]")]
+    thermal_expansion: Annotated[
+        float | None,
+        Field(
+            gt=0, le=1e-3, description="coefficient of thermal expansion [1/K], for temperatures"
+        ),
+    ] = None
 
     @field_validator("density")
     @classmethod
@@ -40,6 +47,26 @@ class Material(BaseModel):
                 f"{1000 * density:g} if it is in t/m^3 or g/cm^3"
             )
         return density
+
+    def expansion(self, of: str) -> float:
+        """Coefficient of thermal expansion [1/K].
+
+        Parameters
+        ----------
+        of : str
+            What is made of it, for the message.
+
+        Raises
+        ------
+        InputError
+            It has none.
+        """
+        if self.thermal_expansion is None:
+            raise InputError(
+                f"{of} has a temperature, but its material no thermal_expansion: add it to the "
+                "material, in 1/K, as 12e-6 for steel"
+            )
+        return self.thermal_expansion
 
     @property
     def shear_modulus(self) -> float:
@@ -57,10 +84,15 @@ class Material(BaseModel):
 
 
 #: The materials that a scene can name without defining them. Ductile iron: EN-GJS-400-15,
-#: EN 1563:2018, Annex (informative) on physical properties.
+#: EN 1563:2018, Annex (informative) on physical properties. Thermal expansion of steel: EN
+#: 1993-1-1, 3.2.6; of both from memory.
 MATERIALS: dict[str, Material] = {
-    "steel": Material(youngs_modulus=200e9, poisson_ratio=0.3, density=7850.0),
-    "ductile_iron": Material(youngs_modulus=169e9, poisson_ratio=0.275, density=7100.0),
+    "steel": Material(
+        youngs_modulus=200e9, poisson_ratio=0.3, density=7850.0, thermal_expansion=12e-6
+    ),
+    "ductile_iron": Material(
+        youngs_modulus=169e9, poisson_ratio=0.275, density=7100.0, thermal_expansion=12.5e-6
+    ),
 }
 
 

@@ -9,7 +9,6 @@ from pydantic import (
     model_validator,
 )
 
-from fe_drivetrain.bearing.catalogue_page import CataloguePage
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import value_by_key
@@ -49,6 +48,11 @@ class Hub(Keys):
         "shaft from its front face, which it is if left out",
     )
 
+
+#: What temperatures of parts are above.
+ASSEMBLED = "assembled"
+
+Temperature = Annotated[float, Field(ge=-60, le=250)]
 
 Inertia = Annotated[float, Field(gt=0, le=MAX_INERTIA)]
 
@@ -137,11 +141,17 @@ class Scene(Drivetrain):
     materials: Mapping[str, Material] = {}
     mesh: MeshSizes = MeshSizes()
     uncertainty: Mapping[str, Spread] = {}
+    temperatures: Mapping[str, Temperature] = Field(
+        default={},
+        description="temperature of parts by their names, 'shaft', 'NAME' of a bearing and "
+        "'NAME.housing' [degC]; 'assembled' is that of all others, 20 if left out",
+    )
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
         check_scene(self, self.gearbox.stiffness, [point.name for point in self.load_points])
         check_spreads(self, self.uncertainty)
+        check_temperatures(self)
         if self.states_gears or self.limits:
             check_turning(self, main_shaft(self), main_bearings(self))
         return self
@@ -171,6 +181,12 @@ class Scene(Drivetrain):
         if unit.condensed is not None:
             raise InputError(f"{part} is a stiffness alone, and has no material: leave it out")
         return unit.housing_parts[part].material
+
+    def free_strain(self, part: str) -> float:
+        """Strain of a part that is free to expand, by its temperature."""
+        assembled = self.temperatures.get(ASSEMBLED, 20.0)
+        warmer = self.temperatures.get(part, assembled) - assembled
+        return warmer * self.material_of(part).expansion(part) if warmer else 0.0
 
     @property
     def blocks(self) -> dict[str, Housing]:
@@ -239,6 +255,35 @@ class Scene(Drivetrain):
         return self.shaft.seat_diameter(bearing.x, bearing.width, name)
 
 
+def check_temperatures(scene: Scene) -> None:
+    """Refuse temperatures of parts that there are not, or that cannot expand.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+
+    Raises
+    ------
+    InputError
+    """
+    parts = ["shaft"]
+    for unit in scene.bearing_units:
+        parts += [unit.bearing.name, *unit.housing_parts]
+    for name in scene.temperatures:
+        if name not in (ASSEMBLED, *parts):
+            raise InputError(
+                f"temperatures: the scene has no part {shown(name)}: name one of "
+                f"{', '.join(parts)}, or '{ASSEMBLED}'"
+            )
+    if scene.temperatures and scene.nose is not None:
+        raise InputError(
+            "temperatures of a scene with a nose are not computed: leave one of both out"
+        )
+    for part in parts:
+        scene.free_strain(part)
+
+
 #: A joint or a mount that holds rigidly, as a spring [N/m, N m/rad]: a hundred times and more what
 #: bearings and housings of the largest turbines have.
 RIGID = 1e12
@@ -292,11 +337,11 @@ def main_bearings(
     return tuple(found)
 
 
-def _entry_of(scene: Scene, name: str) -> dict[str, str | CataloguePage]:
-    """The catalogue entry of a bearing unit, where it has one."""
+def _entry_of(scene: Scene, name: str) -> dict[str, Any]:
+    """The catalogue entry of a bearing unit and its mounting, where it has them."""
     for unit in scene.bearing_units:
         if unit.bearing.name == name and unit.catalogue is not None:
-            return {"catalogue": unit.catalogue}
+            return {"catalogue": unit.catalogue, "mounting": unit.mounting}
     return {}
 
 

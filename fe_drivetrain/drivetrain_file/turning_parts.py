@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import AfterValidator, Field, field_validator, model_validator
 
 from fe_drivetrain.bearing.catalogue_page import EntryOrPage
+from fe_drivetrain.bearing.mounting import Mounting
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import min_eigenvalue, symmetry_error
 from fe_drivetrain.drivetrain_file.couplings import SplineData
@@ -319,6 +320,13 @@ def _clearance() -> Any:
     )
 
 
+def _mounting() -> Any:
+    return Field(
+        default=None,
+        description="clearance before mounting, fits and temperatures, in place of a clearance",
+    )
+
+
 def diagonal(stiffness: Six | tuple[Row, ...]) -> tuple[float, ...]:
     """The six stiffnesses, or the diagonal of a matrix."""
     if isinstance(stiffness[0], tuple):
@@ -326,7 +334,25 @@ def diagonal(stiffness: Six | tuple[Row, ...]) -> tuple[float, ...]:
     return tuple(float(k) for k in stiffness if not isinstance(k, tuple))
 
 
-class PinData(Part):
+class _Rolling(Part):
+    """A bearing whose rollers may be those of a catalogue."""
+
+    name: str
+    catalogue: EntryOrPage | None = _catalogue()
+    clearance: float | None = _clearance()
+    mounting: Mounting | None = _mounting()
+
+    @model_validator(mode="after")
+    def _one_clearance(self) -> Self:
+        if self.clearance is not None and self.mounting is not None:
+            raise InputError(
+                f"bearing {self.name!r} has a clearance and a mounting, from which another "
+                "follows: leave one out"
+            )
+        return self
+
+
+class PinData(_Rolling):
     """A bearing of each planet on its pin."""
 
     name: str = Field(default="", description="such as upwind")
@@ -336,11 +362,9 @@ class PinData(Part):
     stiffness: SixOrMatrix = Field(
         description="axial, radial, tangential, and about them, N/m, N m/rad; or six rows"
     )
-    catalogue: EntryOrPage | None = _catalogue()
-    clearance: float | None = _clearance()
 
 
-class BearingData(Part):
+class BearingData(_Rolling):
     """A bearing of a shaft or of a carrier, in the housing."""
 
     name: str = Field(description="name of the bearing")
@@ -353,8 +377,6 @@ class BearingData(Part):
     stiffness: SixOrMatrix = Field(
         description="along x, y, z and about them, N/m, N m/rad; or six rows of a matrix"
     )
-    catalogue: EntryOrPage | None = _catalogue()
-    clearance: float | None = _clearance()
 
 
 class Brake(Part):

@@ -38,6 +38,7 @@ def show_life(run: Run, page: Page, result: LifeResult) -> None:
     _events(page, result)
     _limits(page, result)
     _levels(page, result)
+    _clearances(page, result)
     _assumed(page, result)
     for life in result.lives:
         each = f", of each of {life.bearing.planets} planets" if life.bearing.planets else ""
@@ -173,6 +174,25 @@ def _levels(page: Page, result: LifeResult) -> None:
         "is loaded in the frame of its pin, and has the mean damage of the azimuths of its "
         "carrier. A cheaper level is enough where its load differs by 5 % at most, a life by 16 %."
     )
+
+
+def _clearances(page: Page, result: LifeResult) -> None:
+    """The clearance of each bearing, what makes it, and what it does to L10mr."""
+    page.section("Clearance, and what it does to L10mr")
+    page.table("Clearance as it is taken, and others", result.tables["clearances"])
+    page.text(
+        "Negative is a preload. The other lives are by a sample of a hundredth of the load steps "
+        "of each file. Least and most are with all tolerances of a stated `mounting` at the limits "
+        "that make it so; 'another' is a size to compare with."
+    )
+    if parts := result.tables.get("clearance_parts"):
+        page.table("From initial to operating clearance, radial, of the diameter", parts)
+        page.text(
+            "Rings and seats are thick cylinders, raceways at the middle of the rolling elements, "
+            "and each part has one temperature; each contribution is with those before it already "
+            "there, so that columns add up. Deflection under load is not in it: the rollers' "
+            "equilibrium has it."
+        )
 
 
 def _assumed(page: Page, result: LifeResult) -> None:

@@ -19,14 +19,16 @@ from fe_drivetrain.bearing_life.life.roller_models import rigid_rings
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.mounted_bearings import clearance_change, row_clearance
 from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.turning_parts import BearingData, PinData
 from fe_drivetrain.dynamics.bodies.advice import RUNGS, Rung
 from fe_drivetrain.dynamics.bodies.bearing_reactions import (
     BearingModel,
     Reactions,
     planet_bearing_name,
 )
-from fe_drivetrain.dynamics.bodies.catalogue_seats import main_names
+from fe_drivetrain.dynamics.bodies.catalogue_seats import catalogued, main_names
 from fe_drivetrain.dynamics.bodies.gearbox_mount import stated_mount
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
@@ -131,6 +133,7 @@ def machine_bearings(
     names = [*(n for n in names if n in main), *(n for n in names if n not in main)]
     require_bearings((*on_rollers, *names), entries, choices.only)
     known = read_bearing_catalogue(*choices.catalogues)
+    rows = catalogued(machine)
     rated, unrated = [], []
     for name in names:
         here = {level: of[name] for level, of in loads.items()}
@@ -140,7 +143,7 @@ def machine_bearings(
             unrated.append(Unrated(name, here[LEVELS[-1]].speed_ratio))
         else:
             entry = entry_of(name, entries[name], known)
-            made = _Maker(name, entries[name], entry, choices)
+            made = _Maker(name, entries[name], entry, choices, rows.get(name))
             rated.append(made.bearing(models[LEVELS[-1]], here, None if name in main else oil))
     degrees = {level.value: model.degrees for level, model in models.items()}
     return MachineBearings(tuple(rated), tuple(unrated), degrees, assumes=finest.assumes)
@@ -239,19 +242,24 @@ class _Maker:
     named: Named
     entry: Entry
     choices: Choices
+    row: BearingData | PinData | None = None
 
     def bearing(
         self, model: BearingModel, here: Mapping[Level, Reactions], oil: Oil | None
     ) -> OneBearing:
         """The bearing by the finest of its levels, with the others and other stiffnesses."""
         catalogues, profile = self.choices.catalogues, profile_of(self.entry, self.choices.profiled)
-        rated = rated_from_catalogue(self.named, *catalogues, **profile)
+        mounted, given = None, None
+        if self.row is not None:
+            mounted, given = row_clearance(self.row, self.entry), self.row.clearance
+        change = clearance_change(given, mounted)
+        rated = rated_from_catalogue(self.named, *catalogues, **profile, **change)
         paths = {level.value: self._path(rated, of) for level, of in here.items()}
         of = here[LEVELS[-1]]
         return OneBearing(
             self.name,
             name_of(self.named),
-            self.entry,
+            self.entry.model_copy(update=change),
             rated,
             paths[LEVELS[-1].value],
             None,
@@ -268,6 +276,7 @@ class _Maker:
                 )
                 for factor, words in FACTORS
             ),
+            clearance=mounted,
         )
 
     def _path(self, rated: RatedBearing, of: Reactions) -> ReactionPath:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import floor, log10
+from math import cos, floor, log10, radians
 
 import numpy as np
 
@@ -58,6 +58,10 @@ class WhatIf:
         The choices then.
     path : ReactionPath or None
         The way of its load then; None where it stays what it is.
+    clearance : float or None
+        Clearance along the contact normal then [m], where that is what differs.
+    stated : bool
+        Whether what is taken was stated, so that the other value only shows what it does.
     """
 
     assumed: str
@@ -65,6 +69,8 @@ class WhatIf:
     rated: RatedBearing
     rules: LifeRules
     path: ReactionPath | None = None
+    clearance: float | None = None
+    stated: bool = False
 
 
 @dataclass(frozen=True)
@@ -77,11 +83,17 @@ class Assumption:
         What is taken though nobody stated it, and what it is compared with.
     years : float
         L10mr with that [years].
+    clearance : float or None
+        Clearance along the contact normal then [m], where that is what differs.
+    stated : bool
+        Whether what is taken was stated, after all.
     """
 
     assumed: str
     instead: str
     years: float
+    clearance: float | None = None
+    stated: bool = False
 
 
 def what_ifs(one: OneBearing, rules: LifeRules, choices: Choices) -> tuple[WhatIf, ...]:
@@ -104,6 +116,7 @@ def what_ifs(one: OneBearing, rules: LifeRules, choices: Choices) -> tuple[WhatI
     return (
         *(WhatIf(o.assumed, o.instead, one.rated, rules, o.path) for o in one.others),
         *_of_clearance(one, rules),
+        *_of_stated_clearance(one, rules),
         *_of_rollers(one, rules, choices),
         *_of_lubricant(one, rules, choices),
     )
@@ -279,6 +292,7 @@ def _of_clearance(one: OneBearing, rules: LifeRules) -> Iterator[WhatIf]:
         "clearance 0",
         f"{1e3 * play:g} mm along the contact normal",
         bearing.with_rows(clearance=play),
+        play,
     )
     if one.entry.contact_angle and "spherical" not in one.entry.kind:
         tight = PRELOADED * play
@@ -288,7 +302,32 @@ def _of_clearance(one: OneBearing, rules: LifeRules) -> Iterator[WhatIf]:
             "preload 0",
             f"{1e3 * tight:g} mm",
             bearing.with_rows(clearance=-tight),
+            -tight,
         )
+
+
+def _of_stated_clearance(one: OneBearing, rules: LifeRules) -> Iterator[WhatIf]:
+    """Zero clearance, and both ends of the band of an operating clearance."""
+    if "clearance" not in one.entry.model_fields_set:
+        return
+    taken = one.entry.clearance
+    others = {"zero": 0.0}
+    if one.clearance is not None:
+        band = one.clearance.along_normal
+        others = {"least": band.least, "most": band.most, "zero": 0.0}
+    for name, value in others.items():
+        if value != taken:
+            bearing = one.rated.bearing.with_rows(clearance=_of_row(one, value))
+            yield replace(
+                _changed(one, rules, "clearance", name, bearing), clearance=value, stated=True
+            )
+
+
+def _of_row(one: OneBearing, value: float) -> float:
+    """Clearance of the rows for one of the entry: a row of balls has it by its contact angle."""
+    if one.entry.kind == "ball":
+        return value * cos(radians(one.entry.contact_angle or 0.0))
+    return value
 
 
 def _of_rollers(one: OneBearing, rules: LifeRules, choices: Choices) -> Iterator[WhatIf]:
@@ -335,9 +374,15 @@ def _of_lubricant(one: OneBearing, rules: LifeRules, choices: Choices) -> Iterat
 
 
 def _changed(
-    one: OneBearing, rules: LifeRules, assumed: str, instead: str, bearing: Bearing
+    one: OneBearing,
+    rules: LifeRules,
+    assumed: str,
+    instead: str,
+    bearing: Bearing,
+    clearance: float | None = None,
 ) -> WhatIf:
-    return WhatIf(assumed, instead, replace(one.rated, bearing=bearing), rules)
+    rated = replace(one.rated, bearing=bearing)
+    return WhatIf(assumed, instead, rated, rules, clearance=clearance)
 
 
 def _balanced(one: Sequence[Steps], other: Sequence[Steps]) -> Iterator[tuple[Steps, Steps]]:

@@ -17,6 +17,7 @@ from fe_drivetrain.procedure.failure_modes import BEARING_RATING, TORQUE_AND_BEN
 from fe_drivetrain.report.number_text import value_with_band
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.studies.clearance_tables import state_clearance
 from fe_drivetrain.studies.life_assumptions import in_words, in_years
 from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.life_sums import BearingLife, scatter
@@ -66,6 +67,23 @@ def answers(
             f"Bearing {life.name}: L10mr {shown}, L10r {in_years(years['L10r'])}, L10 "
             f"{in_years(years['L10'])}, {_under(life, site)}{_takes_longest(life, rules)}."
         )
+        if sentence := _clearance_in_words(life):
+            found.say(sentence)
+
+
+def _clearance_in_words(life: BearingLife) -> str | None:
+    """The operating clearance with its band, and what that does to L10mr."""
+    clearance = life.bearing.clearance
+    if clearance is None:
+        return None
+    band = clearance.radial
+    least, mean, most = (f"{1e6 * value:.0f}" for value in (band.least, band.mean, band.most))
+    then = {one.instead: in_years(one.years) for one in life.clearances}
+    return (
+        f"Bearing {life.name} runs with a radial clearance of {mean} µm, from {least} to {most} µm "
+        f"by its tolerances, with which L10mr is {then.get('least', 'the same')} and "
+        f"{then.get('most', 'the same')}."
+    )
 
 
 def _insides(found: Findings, lives: Sequence[BearingLife]) -> None:
@@ -307,6 +325,8 @@ def _of_entry(found: Findings, life: BearingLife, rules: LifeRules) -> None:
         value: Any = getattr(entry, field)
         unit = {"elements": "-", "contact_angle": "deg"}.get(field, "m")
         found.assume(f"{name}: {field.replace('_', ' ')}", value, unit, entry.sources[field])
+    if life.bearing.clearance is not None:
+        state_clearance(found, name, life.bearing.clearance)
     if "clearance" not in entry.model_fields_set:
         found.assume(f"{name}: clearance", 0.0, "m", "not stated in its catalogue entry")
     words = rollers_in_words(life.bearing, rules.riser)

@@ -152,6 +152,8 @@ class BearingLife:
     inside : InsideBand or None
         Lives, pressure and stiffness over the insides that fit its catalogue's page; None of a
         bearing whose inside is stated.
+    clearances : tuple of Assumption
+        L10mr with other clearances, those of its band among them.
     """
 
     bearing: OneBearing
@@ -167,6 +169,7 @@ class BearingLife:
     by_wind: tuple[WindLoads, ...]
     levels: Mapping[str, float]
     inside: InsideBand | None = None
+    clearances: tuple[Assumption, ...] = ()
 
     def __repr__(self) -> str:
         """One line: the bearing, and its life of each kind."""
@@ -294,6 +297,12 @@ class BearingSums:
             limits = limits + one.damage.limits
         seconds = sum(one.damage.seconds for one in self._files)
         ifs = what_ifs(self._bearing, self._bearing.rules(rules), choices)
+        others = [
+            Assumption(
+                other.assumed, other.instead, self._years_with(i), other.clearance, other.stated
+            )
+            for i, other in enumerate(ifs)
+        ]
         return BearingLife(
             self._bearing,
             tuple(self._files),
@@ -304,10 +313,7 @@ class BearingSums:
             self._peak,
             self._pressures,
             self._worst,
-            tuple(
-                Assumption(other.assumed, other.instead, self._years_with(i))
-                for i, other in enumerate(ifs)
-            ),
+            tuple(one for one in others if not one.stated),
             tuple(self._winds[wind] for wind in sorted(self._winds))
             if np.isfinite(list(self._winds)).all()
             else (),
@@ -316,6 +322,7 @@ class BearingSums:
                 for i, name in enumerate(self._bearing.levels)
             },
             self._inside(),
+            tuple(one for one in others if one.clearance is not None),
         )
 
     def _load_at(self, level: int, used: float) -> float:

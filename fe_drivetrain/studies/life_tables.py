@@ -12,6 +12,7 @@ from fe_drivetrain.bearing_life.life.reference_life import RINGS, reference_load
 from fe_drivetrain.bearing_life.life.roller_damage import KINDS
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.studies.clearance_tables import clearance_parts
 from fe_drivetrain.studies.gearbox_bearings import MachineBearings
 from fe_drivetrain.studies.life_sums import BearingLife
 from fe_drivetrain.studies.rolling_bearings import row_names
@@ -118,6 +119,43 @@ def inside_rows(lives: Sequence[BearingLife]) -> list[Record]:
             if not np.isnan(low)
         ]
     return rows
+
+
+def clearance_rows(lives: Sequence[BearingLife]) -> list[Record]:
+    """Clearance of each bearing as it is taken and others, with L10mr."""
+    rows: list[Record] = []
+    for life in lives:
+        one = life.bearing
+        taken = "mean" if one.clearance is not None else "as taken"
+        years = life.years["L10mr"]
+        found = [(taken, one.entry.clearance, years)]
+        found += [(_which(a.instead), a.clearance or 0.0, a.years) for a in life.clearances]
+        for name, value, then in sorted(found, key=lambda row: row[1]):
+            rows.append(
+                {
+                    "bearing": life.name,
+                    "clearance": name,
+                    "along the contact normal [µm]": 1e6 * value,
+                    "radial [µm]": 1e6 * value / one.normal,
+                    "L10mr then [years]": then,
+                    "over that here [-]": then / years if np.isfinite(years) else None,
+                }
+            )
+    return rows
+
+
+def _which(name: str) -> str:
+    return name if name in ("least", "most", "zero") else "another"
+
+
+def contribution_rows(lives: Sequence[BearingLife]) -> list[Record]:
+    """Contributions to the radial clearance of bearings whose mounting is stated."""
+    return [
+        row
+        for life in lives
+        if life.bearing.clearance is not None
+        for row in clearance_parts(life.name, life.bearing.clearance)
+    ]
 
 
 def file_rows(lives: Sequence[BearingLife]) -> list[Record]:
@@ -353,6 +391,9 @@ def result_tables(lives: Sequence[BearingLife], machine: MachineBearings) -> dic
         tables["assumed"] = assumed
     if insides := inside_rows(lives):
         tables["insides"] = insides
+    tables["clearances"] = clearance_rows(lives)
+    if parts := contribution_rows(lives):
+        tables["clearance_parts"] = parts
     tables["load_zones"] = [
         {"bearing": life.name, "mean load [N]": life.mean_load, "max load [N]": life.peak_load}
         for life in lives

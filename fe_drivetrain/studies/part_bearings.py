@@ -7,8 +7,9 @@ from fe_drivetrain.bearing_life.life.rated import rated_from_catalogue
 from fe_drivetrain.bearing_life.life.reference_life import Turning
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
+from fe_drivetrain.drivetrain_file.mounted_bearings import clearance_change, row_clearance
 from fe_drivetrain.dynamics.bodies.bearing_reactions import planet_bearing_name
-from fe_drivetrain.dynamics.bodies.catalogue_seats import main_names
+from fe_drivetrain.dynamics.bodies.catalogue_seats import catalogued, main_names
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.studies.gearbox_bearings import (
     catalogue_entries,
@@ -59,6 +60,7 @@ def counted_parts(
     names = [*(bearing.name for bearing in machine.bearings), *planets]
     require_bearings(names, entries, choices.only)
     known, main = read_bearing_catalogue(*choices.catalogues), main_names(machine)
+    rows = catalogued(machine)
     if not strict:
         entries = {
             name: entry
@@ -71,8 +73,10 @@ def counted_parts(
         if name not in entries or choices.only not in (None, name):
             continue
         entry = entry_of(name, entries[name], known)
-        profile = profile_of(entry, choices.profiled)
-        rated = rated_from_catalogue(entries[name], *choices.catalogues, **profile)
+        changes = profile_of(entry, choices.profiled)
+        if (row := rows.get(name)) is not None:
+            changes |= clearance_change(row.clearance, row_clearance(row, entry))
+        rated = rated_from_catalogue(entries[name], *choices.catalogues, **changes)
         turning: Turning | None = None
         if name not in main:
             turning = "outer" if name in planets else "inner"

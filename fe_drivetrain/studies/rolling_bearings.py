@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from fe_drivetrain.bearing.catalogue import Entry, Named, name_of, read_bearing_catalogue
+from fe_drivetrain.bearing.entry_clearance import normal_of
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow
+from fe_drivetrain.bearing.operating_clearance import OperatingClearance
 from fe_drivetrain.bearing.races import Races
 from fe_drivetrain.bearing_life.coupled.load_paths import PINNED, LoadPath
 from fe_drivetrain.bearing_life.coupled.of_scene import scene_body
@@ -27,6 +29,7 @@ from fe_drivetrain.bearing_life.life.roller_models import (
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.mounted_bearings import clearance_change, unit_clearance
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.studies.named_bearings import NamedBearing, named_bearings
 
@@ -138,6 +141,8 @@ class OneBearing:
         The load by each level of the drivetrain's statics, from the cheapest.
     others : tuple of OtherPath
         The load with other values of what was assumed.
+    clearance : OperatingClearance or None
+        Where the drivetrain says how it is mounted; `rated` has its mean.
     """
 
     name: str
@@ -153,6 +158,7 @@ class OneBearing:
     planets: int = 0
     levels: Mapping[str, ReactionPath] = field(default_factory=dict)
     others: tuple[OtherPath, ...] = ()
+    clearance: OperatingClearance | None = None
 
     @property
     def seen(self) -> str:
@@ -160,6 +166,11 @@ class OneBearing:
         if self.planets:
             return "on its pin, 0 deg towards the sun, 90 deg along the tangent about +x"
         return "looking downwind, 90 deg on top"
+
+    @property
+    def normal(self) -> float:
+        """Clearance of the catalogue's kind for one of radial clearance."""
+        return normal_of(self.entry)
 
     def path_with(self, bearing: Bearing) -> LoadPath | ReactionPath:
         """The load path with another clearance or profile of this bearing."""
@@ -212,9 +223,13 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
     stiffness = _stiffness(choices.support)
     _require_choices(scene, choices)
     named = _all_named(scene, choices)
+    mounted = {name: unit_clearance(scene, name, one.entry) for name, one in named.items()}
     rated = {
         name: rated_from_catalogue(
-            one.named, *choices.catalogues, **profile_of(one.entry, choices.profiled)
+            one.named,
+            *choices.catalogues,
+            **profile_of(one.entry, choices.profiled),
+            **clearance_change(None, mounted[name]),
         )
         for name, one in named.items()
     }
@@ -234,7 +249,19 @@ def bearings_of(scene: Scene, choices: Choices) -> list[OneBearing]:
             scene.gearbox.weight if choices.weight else 0.0,
             GRAVITY if choices.weight else 0.0,
         )
-        result.append(OneBearing(name, entry_name, entry, rated[name], path, seat, rollers, misfit))
+        result.append(
+            OneBearing(
+                name,
+                entry_name,
+                entry.model_copy(update=clearance_change(None, mounted[name])),
+                rated[name],
+                path,
+                seat,
+                rollers,
+                misfit,
+                clearance=mounted[name],
+            )
+        )
     return result
 
 

@@ -12,6 +12,7 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.left_out import left_out
+from fe_drivetrain.drivetrain_file.mounted_bearings import unit_clearance
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import chart, trace
@@ -21,6 +22,7 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.shafts.fidelity.level_costs import Forecast, forecast
 from fe_drivetrain.shafts.response.model import Model
+from fe_drivetrain.studies.clearance_tables import clearance_parts, state_clearance
 from fe_drivetrain.studies.drivetrain_layout import LAYOUT, drivetrain_layout
 from fe_drivetrain.studies.machine_description import (
     Turning,
@@ -29,10 +31,11 @@ from fe_drivetrain.studies.machine_description import (
     turning_parts,
     turning_tables,
 )
-from fe_drivetrain.studies.named_bearings import named_bearings
+from fe_drivetrain.studies.named_bearings import NamedBearing, named_bearings
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.scene_description import description
 from fe_drivetrain.studies.solved_assembly import checked_model
+from fe_drivetrain.studies.thermal_tables import thermal_tables
 from fe_drivetrain.studies.unused import catalogues_not_used
 
 
@@ -124,12 +127,34 @@ def check(
     _answer(found, model, costs, list(filter(None, misfits)), turning)
     return CheckResult(
         parts=parts,
-        described=description(model) | (turning_tables(turning) if turning else {}),
+        described=description(model)
+        | _clearances(found, scene, named)
+        | thermal_tables(scene)
+        | (turning_tables(turning) if turning else {}),
         costs=costs,
         model=model,
         turning=turning,
         **found.frozen(steps.times, catalogues=[path.name for path in catalogues]),
     )
+
+
+def _clearances(
+    found: Findings, scene: Scene, named: Mapping[str, NamedBearing]
+) -> dict[str, list[Record]]:
+    """A table of operating clearances of bearings whose mounting is stated; notes on it."""
+    rows: list[Record] = []
+    for name in (unit.bearing.name for unit in scene.bearing_units if unit.mounting is not None):
+        if name not in named:
+            found.note(
+                f"Bearing {name}: its mounting needs the rollers of a catalogue entry: name one "
+                "under 'catalogue'."
+            )
+            continue
+        clearance = unit_clearance(scene, name, named[name].entry)
+        assert clearance is not None
+        rows += clearance_parts(name, clearance)
+        state_clearance(found, name, clearance)
+    return {"From initial to operating clearance, radial, of the diameter": rows} if rows else {}
 
 
 def _lumped(drivetrain: Drivetrain, turning: Turning, found: Findings, steps: Steps) -> CheckResult:

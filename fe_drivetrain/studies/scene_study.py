@@ -65,6 +65,7 @@ from fe_drivetrain.studies.study_loads import (
     given_loads,
     surrogate_loads,
 )
+from fe_drivetrain.studies.thermal_tables import thermal_tables
 from fe_drivetrain.studies.tilt_secants import TiltSecant, secant_rows, tilt_secants
 from fe_drivetrain.turbine_loads.histories.damage import SLOPES, check_slope
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
@@ -294,7 +295,7 @@ class _Solved:
             "units": self.levels.units,
             "seat": self.seat,
             "beginning": history_beginning(self.scene, self.levels, self.entered),
-            "described": description(self.model),
+            "described": description(self.model) | thermal_tables(self.scene, self.model),
             "model": self.model,
             "response": self.response,
             "levels": self.levels,

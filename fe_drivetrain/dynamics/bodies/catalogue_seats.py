@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.bearing.catalogue import catalogue_bearing
+from fe_drivetrain.bearing.catalogue import catalogue_bearing, catalogue_entry
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
+from fe_drivetrain.drivetrain_file.mounted_bearings import clearance_change, row_clearance
 from fe_drivetrain.drivetrain_file.turning_parts import BearingData, PinData
 from fe_drivetrain.dynamics.bodies.advice import Operation, Rung
 from fe_drivetrain.dynamics.bodies.bodies import assemble
@@ -125,7 +126,7 @@ def on_catalogue(
 
 
 def bearing_of(row: BearingData | PinData, catalogues: Sequence[str | Path] = ()) -> Bearing:
-    """The rolling bearing of a row: its catalogue entry, with the row's clearance where given.
+    """The rolling bearing of a row: its catalogue entry, with the row's clearance or mounting.
 
     Parameters
     ----------
@@ -139,8 +140,9 @@ def bearing_of(row: BearingData | PinData, catalogues: Sequence[str | Path] = ()
     InputError
         It is in no catalogue.
     """
-    changes = {} if row.clearance is None else {"clearance": row.clearance}
     assert row.catalogue is not None  # of `catalogued`
+    entry = catalogue_entry(row.catalogue, *catalogues)
+    changes = clearance_change(row.clearance, row_clearance(row, entry))
     return catalogue_bearing(row.catalogue, *catalogues, **changes)
 
 

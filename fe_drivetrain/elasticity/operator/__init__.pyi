@@ -6,6 +6,7 @@ from .element_loops import is_straight as is_straight
 from .loads import Traction as Traction
 from .loads import body_loads as body_loads
 from .loads import pressure as pressure
+from .loads import thermal_loads as thermal_loads
 from .loads import traction_loads as traction_loads
 from .mass import mass_matrix as mass_matrix
 from .stress import nodal_stresses as nodal_stresses

@@ -94,3 +94,48 @@ def body_loads(
         f = np.broadcast_to(given, (volumes.size, 3)).reshape(*volumes.shape, 3)
         np.add.at(forces, part, np.einsum("qn,eq,eqi->eni", values, volumes, f))
     return forces.ravel()
+
+
+def thermal_loads(
+    points: Floats,
+    cells: Ints,
+    lame: tuple[float, float],
+    free: Floats,
+    n_dofs: int | None = None,
+) -> Floats:
+    """Nodal forces that stand for the strain that a temperature would cause in a free solid.
+
+    They are the integral of (3 lambda + 2 mu) e grad N over the volume (Zienkiewicz and Taylor, The
+    Finite Element Method, initial strains): the displacements that they cause are those of the
+    heated solid, whose stresses are those of `stresses` with the same free strain.
+
+    Parameters
+    ----------
+    points : Floats
+        Node coordinates (n, 3) [m].
+    cells : Ints
+        (n_cells, k) node numbers in VTK's order.
+    lame : tuple[float, float]
+        Lame's constants (lambda, mu) [Pa].
+    free : Floats
+        (n,) free strain e of the nodes: coefficient of expansion times difference of temperature.
+    n_dofs : int or None
+        Length of the result; 3 n where not given.
+
+    Returns
+    -------
+    forces
+        (n_dofs,) [N]; they are in equilibrium.
+    """
+    check_nodes(cells, len(points))
+    kind = element_kind(cells.shape[1])
+    X, W = get_quadrature(kind.element.refdom, _DEGREE)
+    values, gradients = kind.shape(X)
+    stiff = 3.0 * lame[0] + 2.0 * lame[1]
+    forces = np.zeros((len(points) if n_dofs is None else n_dofs // 3, 3))
+    for rows in chunks(len(cells)):
+        part = cells[rows]
+        physical, determinants = jacobian(points, part, gradients)[:2]
+        weights = stiff * np.abs(determinants) * W * (free[part] @ values.T)
+        np.add.at(forces, part, np.einsum("eq,eqin->eni", weights, physical))
+    return forces.ravel()

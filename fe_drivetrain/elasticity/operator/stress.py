@@ -11,7 +11,12 @@ from fe_drivetrain.elasticity.mesh.shapes import ElementKind, element_kind, shap
 
 
 def stresses(
-    points: Floats, cells: Ints, u: Floats, lame: tuple[float, float], at: Floats
+    points: Floats,
+    cells: Ints,
+    u: Floats,
+    lame: tuple[float, float],
+    at: Floats,
+    free: Floats | None = None,
 ) -> Floats:
     """Stresses inside the elements.
 
@@ -27,6 +32,8 @@ def stresses(
         Lame's constants (lambda, mu) [Pa].
     at : Floats
         (3, n_q) reference coordinates in each element.
+    free : Floats or None
+        (n,) free strain of the nodes by a temperature, see `thermal_loads`: it causes no stress.
 
     Returns
     -------
@@ -35,6 +42,9 @@ def stresses(
     """
     lam, mu = lame
     e = strains(points, cells, u, at)
+    if free is not None:
+        values = element_kind(cells.shape[1]).shape(at)[0]
+        e[..., :3] -= (free[cells] @ values.T)[..., None]
     s = 2.0 * mu * e
     s[..., :3] += lam * e[..., :3].sum(axis=-1, keepdims=True)
     return s
@@ -86,7 +96,13 @@ def stresses_of_fields(physical: Floats, moved: Floats, lame: tuple[float, float
     return s
 
 
-def nodal_stresses(points: Floats, cells: Ints, u: Floats, lame: tuple[float, float]) -> Floats:
+def nodal_stresses(
+    points: Floats,
+    cells: Ints,
+    u: Floats,
+    lame: tuple[float, float],
+    free: Floats | None = None,
+) -> Floats:
     """Stresses at the nodes: taken where elements are best, carried to the nodes, and averaged.
 
     Stresses of quadratic elements are of higher order at the Gauss points of one degree less
@@ -95,7 +111,7 @@ def nodal_stresses(points: Floats, cells: Ints, u: Floats, lame: tuple[float, fl
 
     Parameters
     ----------
-    points, cells, u, lame : Floats, Ints, Floats, tuple[float, float]
+    points, cells, u, lame, free : Floats, Ints, Floats, tuple[float, float], Floats or None
         Arguments of `stresses`; cells of one material.
 
     Returns
@@ -105,7 +121,7 @@ def nodal_stresses(points: Floats, cells: Ints, u: Floats, lame: tuple[float, fl
     """
     kind = element_kind(cells.shape[1])
     at, weights, to_nodes = _best_points(kind)
-    s = stresses(points, cells, u, lame, at)
+    s = stresses(points, cells, u, lame, at, free)
     gradients = kind.shape(at)[1]
     volume = np.concatenate(
         [

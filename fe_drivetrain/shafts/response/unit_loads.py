@@ -190,7 +190,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
     internal = kernels.product(ready.stiffness, U)
     multipliers = ready.elimination.multipliers(internal - F)
     forces = part_forces(model, U, internal)
-    reactions = _reactions(model, multipliers, forces, U, cases)
+    reactions = reactions_by_part(model, multipliers, forces, U, cases)
 
     direct = np.concatenate([r[:, -1] for r in reactions.values()])
     superposed = np.concatenate([r[:, :-1] @ factors for r in reactions.values()])
@@ -218,14 +218,28 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
     )
 
 
-def _reactions(
+def reactions_by_part(
     model: Model,
     multipliers: Mapping[str, Floats],
     internal: Mapping[str, Floats],
     U: Floats,
     cases: Floats,
 ) -> dict[str, Floats]:
-    """Reactions from the residual on constrained degrees of freedom; never from stresses."""
+    """Reactions from the residual on constrained degrees of freedom; never from stresses.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    multipliers : Mapping[str, Floats]
+        Forces of its constraints.
+    internal : Mapping[str, Floats]
+        Internal forces (n_dofs, m) of each part [N].
+    U : Floats
+        Displacements (n_dofs, m) [m].
+    cases : Floats
+        (n_loads, m) unit loads that act inside the parts.
+    """
     mesh = model.mesh
     reactions: dict[str, Floats] = {}
     for unit in model.scene.bearing_units:
