@@ -94,6 +94,9 @@ class Entry(BaseModel):
     series: str | None = Field(
         default=None, min_length=1, description="series of a maker's catalogue, for its friction"
     )
+    seal_diameter: float | None = Field(
+        default=None, gt=0, description="diameter on which both of its seals rub [m], for friction"
+    )
     limiting_speed_rpm: float | None = Field(
         default=None, gt=0, description="that the catalogue allows [1/min]"
     )

@@ -78,6 +78,8 @@ class FrictionBearing:
     series : str or None
         Series of a maker's catalogue, as "NU22", "NCF" of one without a cage, "240"; None where it
         is not known.
+    seal_diameter : float or None
+        Diameter on which both of its seals rub [m]; None of an open bearing.
     """
 
     name: str
@@ -86,6 +88,7 @@ class FrictionBearing:
     outside: float
     contact_angle: float = 0.0
     series: str | None = None
+    seal_diameter: float | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 < self.bore < self.outside < np.inf:
@@ -154,7 +157,9 @@ def friction_bearing(name: str, entry: Entry) -> FrictionBearing:
     across = entry.element_diameter / ROLLER_SHARE
     bore = mean - across if entry.bore is None else entry.bore
     angle = radians(entry.contact_angle or 0.0)
-    return FrictionBearing(name, entry.kind, bore, 2.0 * mean - bore, angle, entry.series)
+    outside = 2.0 * mean - bore
+    series, seal = entry.series, entry.seal_diameter
+    return FrictionBearing(name, entry.kind, bore, outside, angle, series, seal)
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ M = M_rr + M_sl: phi_ish phi_rs G_rr (nu n)^0.6 with inlet shear heating and sta
 G_sl mu_sl, where mu_sl goes from boundary to full-film friction as the film grows. Forms of G and
 of the factors: SKF, Rolling bearings (2016), p. 106, and public programs that use them. Constants
 of deep groove balls and of the spherical series 222 E are those of such programs; all others are
-from memory of the same publication and not verified. Two of its terms are left out: seals (bearings
-of a gearbox are open) and drag in an oil bath, whose diagram V_M was not found.
+from memory of the same publication and not verified. Seals are those of the catalogue of 2006 as a
+public program (thermca) has them. Drag in an oil bath is left out: its diagram V_M was not found.
 """
 
 from __future__ import annotations
@@ -127,6 +127,13 @@ FULL_FILM = {"cylindrical": 0.02, "single_row_tapered": 0.002, "double_row_taper
 MINERAL_FILM = 0.05
 """The same of all other kinds, with mineral oil."""
 
+SEALS = {
+    "ball": (2.25, 0.018, 0.0),
+    "cylindrical": (2.0, 0.032, 50.0),
+    "spherical_roller": (2.0, 0.057, 50.0),
+}
+"""beta, K_S1, K_S2 of two seals by kind of bearing; balls from an outside diameter of 100 mm."""
+
 BOUNDARY, STARTING = 0.12, 0.15
 """Friction coefficient without a film: in motion, and at standstill."""
 
@@ -140,7 +147,7 @@ def skf_friction(
     supply: Supply = "oil jet",
     static_rating: float | None = None,
 ) -> FrictionMoment:
-    """Friction moment by SKF's model, without seals and drag.
+    """Friction moment by SKF's model, without drag in an oil bath.
 
     Parameters
     ----------
@@ -180,9 +187,35 @@ def skf_friction(
     for constants in _constants(bearing).values():
         rolling, sliding = _variables(bearing, constants, Fr, Fa, n, static_rating)
         found.append((reduced * rolling / 1e3, coefficient * sliding / 1e3))
+    rubbed = seal_moment(bearing)
     viscous, loaded = (np.median([one[k] for one in found], axis=0) for k in (0, 1))
-    sums = np.array([loaded + viscous, *(one[0] + one[1] for one in found)])
+    loaded = loaded + rubbed
+    sums = np.array([loaded + viscous, *(one[0] + one[1] + rubbed for one in found)])
     return FrictionMoment(loaded, viscous, sums.min(axis=0), sums.max(axis=0))
+
+
+def seal_moment(bearing: FrictionBearing) -> float:
+    """Moment of both seals of a bearing [N m]: K_S1 d_s^beta + K_S2; 0 of an open one.
+
+    Parameters
+    ----------
+    bearing : FrictionBearing
+        The bearing.
+
+    Raises
+    ------
+    InputError
+        Constants of seals of its kind are not known.
+    """
+    if bearing.seal_diameter is None:
+        return 0.0
+    if bearing.kind not in SEALS:
+        raise InputError(
+            f"friction of bearing {bearing.name!r}: seals of kind {bearing.kind} have no "
+            f"constants, those of {', '.join(SEALS)} have: leave seal_diameter out"
+        )
+    power, by_size, fixed = SEALS[bearing.kind]
+    return float((by_size * (1e3 * bearing.seal_diameter) ** power + fixed) / 1e3)
 
 
 def sliding_coefficient(bearing: FrictionBearing, speed: ArrayLike, viscosity: float) -> Floats:

@@ -159,20 +159,17 @@ def _at_pitch_point(pair: Pair, speed: ArrayLike) -> tuple[Floats, float]:
     return 2.0 * np.minimum(turning, FASTEST) * sin(pair.working_angle), curvature
 
 
-def shaft_seal_loss(diameter: float, speed: ArrayLike) -> Floats:
-    """Power that one rubbing shaft seal takes (ISO/TR 14179-2, as a public program quotes it).
+def shaft_seal_moment(diameter: float) -> float:
+    """Moment of one seal that rubs on a shaft (ISO/TR 14179-2, as a public program quotes it).
 
     Parameters
     ----------
     diameter : float
         Diameter of the shaft [m].
-    speed : array_like
-        Speed of the shaft, whose sign does not matter [rad/s].
 
     Returns
     -------
-    power : Floats
-        7.69e-6 d^2 n [W] with d in mm and n in 1/min.
+    moment : float
+        [N m]: the power of 7.69e-6 d^2 n W, with d in mm and n in 1/min, over the speed.
     """
-    n = np.abs(np.asarray(speed, dtype=float)) * 30.0 / pi
-    return np.asarray(7.69e-6 * (1e3 * diameter) ** 2 * n)
+    return 7.69e-6 * (1e3 * diameter) ** 2 * 30.0 / pi

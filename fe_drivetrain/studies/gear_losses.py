@@ -26,6 +26,7 @@ from fe_drivetrain.dynamics.bodies.power_losses import (
     LossModel,
     LossyBearing,
     LossyMesh,
+    LossySeal,
 )
 from fe_drivetrain.gear.losses import OVER_RA
 from fe_drivetrain.procedure.bearing_defects import ring_speeds
@@ -168,7 +169,8 @@ def drivetrain_losses(
     rung = _statics_rung(train.rungs)
     reactions = BearingModel(machine, rung.level, flexible=rung.flexible).reactions()
     teeth = [_lossy(mesh) for mesh in meshes.values()]
-    model = LossModel(reactions, bearings, teeth, film, machine.speeds[-1])
+    seals = _seals(drivetrain, machine)
+    model = LossModel(reactions, bearings, teeth, film, machine.speeds[-1], seals)
     hub, speed, seconds = _points(train, given)
     levels = _ladder(model, hub, speed, seconds)
     answer = next(one for one in levels if one.name == ANSWER)
@@ -248,6 +250,20 @@ def lossy_bearings(
         place = _place(held.get(name, name), shafts)
         found.append(LossyBearing(name, place, entry, grease if name in main else film))
     return tuple(found), tuple(unknown)
+
+
+def _seals(drivetrain: Drivetrain, machine: MachineTable) -> list[LossySeal]:
+    """Seals of the gearbox that rub."""
+    numbers = {shaft.name: number for number, shaft in enumerate(machine.shafts)}
+    return [
+        LossySeal(
+            one.name,
+            numbers[one.shaft],
+            one.diameter,
+            abs(machine.speeds[numbers[one.shaft]]),
+        )
+        for one in drivetrain.gearbox.seals
+    ]
 
 
 def _place(holds: str, shafts: Mapping[str, int]) -> float:

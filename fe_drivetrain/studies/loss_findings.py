@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_drivetrain.dynamics.bodies.power_losses import Losses
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import bars, chart, trace
 from fe_drivetrain.report.number_text import formatted
@@ -42,12 +41,15 @@ def state_losses(found: Findings, losses: DrivetrainLosses) -> None:
     found.found(HEAT, whole / 1e3, float(band[0]) * speed / 1e3)
     torque = float(own.generator_torque[0])
     found.found(GENERATOR, torque / 1e3, float(band[0]) / abs(own.ratio) / 1e3)
-    bearings = float(sum(own.heat[k, 0] for k in _rows(own, losses.bearings)))
+    bearings, meshes = (
+        float(sum(own.heat[k, 0] for k, name in enumerate(own.names) if name in names))
+        for names in (losses.bearings, losses.meshes)
+    )
     found.say(
         f"At the reference torque {formatted(whole / 1e3, 3)}\u00a0kW of "
         f"{formatted(float(own.entering[0]) / 1e3, 4)}\u00a0kW become heat, "
         f"{formatted(bearings / 1e3, 3)}\u00a0kW in {len(losses.bearings)} bearings and "
-        f"{formatted((whole - bearings) / 1e3, 3)}\u00a0kW in {len(losses.meshes)} kinds of "
+        f"{formatted(meshes / 1e3, 3)}\u00a0kW in {len(losses.meshes)} kinds of "
         f"meshes; the generator has {formatted(torque / 1e3, 4)}\u00a0kN\u00a0m."
     )
     balance = own.entering - own.leaving - own.heat.sum(axis=0)
@@ -90,7 +92,8 @@ def part_rows(losses: DrivetrainLosses) -> list[Record]:
     whole = float(own.heat[:, 0].sum())
     rows: list[Record] = []
     for k, name in enumerate(own.names):
-        row: Record = {"part": name, "kind": "mesh" if name in losses.meshes else "bearing"}
+        kind = "bearing" if name in losses.bearings else "seal"
+        row: Record = {"part": name, "kind": "mesh" if name in losses.meshes else kind}
         for level in losses.levels:
             row[f"heat by {level.name} [W]"] = float(level.losses.heat[k, 0])
         row["share of all [%]"] = 100.0 * float(own.heat[k, 0]) / whole
@@ -224,10 +227,6 @@ def _relative(losses: DrivetrainLosses) -> float:
     return float(losses.efficiency_band[0])
 
 
-def _rows(of: Losses, names: tuple[str, ...]) -> list[int]:
-    return [k for k, name in enumerate(of.names) if name in names]
-
-
 def _cautions(found: Findings, losses: DrivetrainLosses) -> None:
     """State what is not counted."""
     if losses.left_out:
@@ -238,8 +237,9 @@ def _cautions(found: Findings, losses: DrivetrainLosses) -> None:
             first=True,
         )
     found.note(
-        "Churned oil, drag in an oil bath, seals, pumps and the generator are not in the losses; "
-        "factors of ISO/TR 14179 and most of SKF's constants are second-hand or from memory."
+        "Churned oil, drag in an oil bath, pumps and the generator are not in the losses, nor "
+        "seals that the file does not state; factors of ISO/TR 14179 and most of SKF's constants "
+        "are second-hand or from memory."
     )
 
 

@@ -28,7 +28,12 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies.bearing_reactions import Reactions
 from fe_drivetrain.gear.involute import Pair
-from fe_drivetrain.gear.losses import film_friction, mean_friction, tooth_loss_factor
+from fe_drivetrain.gear.losses import (
+    film_friction,
+    mean_friction,
+    shaft_seal_moment,
+    tooth_loss_factor,
+)
 
 FrictionModel = Literal["palmgren", "skf", "rollers"]
 """Model of friction: factors f0 and f1 of bearings, SKF's published model, or the sum over rollers;
@@ -110,6 +115,28 @@ class LossyMesh:
     def rolling(self) -> float:
         """Power that rolls through the mesh, against the carrier, over that of the stage."""
         return self.planets * self.torque_ratio * self.speed_ratio
+
+
+@dataclass(frozen=True)
+class LossySeal:
+    """A seal that rubs on a shaft.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    shaft : int
+        Number of its shaft from 0.
+    diameter : float
+        Diameter on which it rubs [m].
+    speed_ratio : float
+        Speed of the shaft over that of the rotor, without a sign.
+    """
+
+    name: str
+    shaft: int
+    diameter: float
+    speed_ratio: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,8 +234,8 @@ class LossModel:
         Oil of the teeth.
     ratio : float
         Speed of the generator over that of the rotor.
-    weight : bool
-        Whether bodies behind the rotor have their weight.
+    seals : sequence of LossySeal
+        Those that rub.
     """
 
     def __init__(
@@ -218,10 +245,10 @@ class LossModel:
         meshes: Sequence[LossyMesh],
         film: Film,
         ratio: float,
-        weight: bool = True,
+        seals: Sequence[LossySeal] = (),
     ) -> None:
-        self.reactions, self.film, self.ratio, self.weight = reactions, film, ratio, weight
-        self.bearings, self.meshes = tuple(bearings), tuple(meshes)
+        self.reactions, self.film, self.ratio = reactions, film, ratio
+        self.bearings, self.meshes, self.seals = tuple(bearings), tuple(meshes), tuple(seals)
 
     def losses(
         self, hub: Floats, speed: Floats, model: FrictionModel, carried: Floats | None = None
@@ -256,6 +283,10 @@ class LossModel:
                 return self._mesh(mesh, left, speed, model)
 
             made.append((mesh.stage - 0.5, mesh.name, teeth))
+        for seal in self.seals:
+            rubbed = np.full(len(torque), seal.speed_ratio * shaft_seal_moment(seal.diameter))
+            of = rubbed, rubbed, rubbed
+            made.append((float(seal.shaft), seal.name, lambda left, of=of: of))  # type: ignore[misc]
         made.sort(key=lambda one: one[0])
         rows: list[tuple[Floats, Floats, Floats]] = []
         left, sign = torque.astype(float), np.sign(speed)
@@ -275,7 +306,7 @@ class LossModel:
     ) -> tuple[Floats, Floats, Floats]:
         """Torque (n,) at the rotor that a bearing takes, its least and its largest value [N m]."""
         reaction = self.reactions[one.name]
-        loads = reaction.under(hub, self.weight)
+        loads = reaction.under(hub)
         count, azimuths = loads.shape[:2]
         flat = loads.reshape(-1, 6)
         turning = np.repeat(speed * reaction.speed_ratio, azimuths)
