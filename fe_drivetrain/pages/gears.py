@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_drivetrain.pages.gears_losses import show_losses
+from fe_drivetrain.pages.gears_losses import losses_section
 from fe_drivetrain.plots.figures import error_range, error_traces
 from fe_drivetrain.report.charts import bars, chart, marked, trace
 from fe_drivetrain.report.number_text import formatted
@@ -40,7 +40,7 @@ def show_gears(run: Run, page: Page, result: GearsResult) -> None:
     _levels(page, result)
     _geometry(page, result)
     if result.losses is not None:
-        show_losses(page, result)
+        losses_section(page, result)
 
 
 def _safety(page: Page, result: GearsResult) -> None:

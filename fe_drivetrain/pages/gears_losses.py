@@ -9,7 +9,7 @@ from fe_drivetrain.studies.gear_ratings import GearsResult
 from fe_drivetrain.studies.loss_findings import efficiency_chart, heat_chart
 
 
-def show_losses(page: Page, result: GearsResult) -> None:
+def losses_section(page: Page, result: GearsResult) -> None:
     """Show where power becomes heat, and what arrives at the generator.
 
     Parameters

@@ -9,11 +9,13 @@ from fe_drivetrain import read_drivetrain
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.dynamics.bodies.bearing_reactions import bearing_reactions
 from fe_drivetrain.dynamics.bodies.power_losses import Film, LossModel
+from fe_drivetrain.gear.losses import mean_friction, tooth_loss_factor
 from fe_drivetrain.studies.gear_loads import GearLoading, loads_of
 from fe_drivetrain.studies.gear_losses import (
     CONSTANT,
     LEVELS,
     DrivetrainLosses,
+    _lossy,
     drivetrain_losses,
     lossy_bearings,
 )
@@ -100,9 +102,6 @@ def test_a_mesh_has_the_torque_that_is_left_where_it_is() -> None:
     """Without friction of bearings a mesh loses mu H_V of what rolls through it."""
     drivetrain = read_drivetrain("grc_750kw")
     train, meshes, _ = prepared(drivetrain, None, OPTIONS, GearLoading((), None, None, None, False))
-    from fe_drivetrain.gear.losses import mean_friction, tooth_loss_factor
-    from fe_drivetrain.studies.gear_losses import _lossy
-
     mesh = _lossy(meshes["stage 3 mesh"])
     film = Film(100e-6)
     model = LossModel({}, (), (mesh,), film, train.machine.speeds[-1])
@@ -175,3 +174,19 @@ def test_all_bearings_have_a_place_on_the_way_of_the_torque() -> None:
     assert (places["ISS-A"], places["ISS-B"], places["HSS-A"]) == (2.0, 2.0, 3.0)
     assert bearing_reactions(machine, count=1).keys() == places.keys()
     assert list(LEVELS.values()) == ["palmgren", "skf", "rollers"]
+
+
+def test_a_mesh_behind_losses_loses_less() -> None:
+    drivetrain = read_drivetrain("grc_750kw")
+    loading = GearLoading((), None, None, None, False)
+    train, meshes, _ = prepared(drivetrain, None, OPTIONS, loading)
+    first, last = (_lossy(meshes[name]) for name in ("stage 1 sun-planet", "stage 3 mesh"))
+    hub, speed = np.zeros((1, 6)), np.array([2.0])
+    hub[0, 3] = 3e5
+    alone, behind = (
+        LossModel({}, (), of, Film(100e-6), train.machine.speeds[-1]).losses(hub, speed, "skf")
+        for of in ((last,), (first, last))
+    )
+    # mu goes with the torque to the power 0.2, so that the loss goes with the power 1.2
+    left = 1.0 - behind.taken[0, 0] / 3e5
+    assert behind.taken[1, 0] / alone.taken[0, 0] == pytest.approx(left**1.2)
