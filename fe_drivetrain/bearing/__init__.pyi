@@ -43,6 +43,8 @@ from .contact_forces import elements as elements
 from .contact_forces import forces as forces
 from .contact_forces import roller_loads as roller_loads
 from .contact_forces import turn as turn
+from .defect_frequencies import DefectFrequencies as DefectFrequencies
+from .defect_frequencies import defect_frequencies as defect_frequencies
 from .designations import Designation as Designation
 from .designations import Sizes as Sizes
 from .designations import read_designation as read_designation
@@ -51,6 +53,10 @@ from .distribution import sjovall as sjovall
 from .distribution import superposed_peak as superposed_peak
 from .fitted_rollers import FittedRollers as FittedRollers
 from .fitted_rollers import fitted_rollers as fitted_rollers
+from .friction import FrictionBearing as FrictionBearing
+from .friction import FrictionMoment as FrictionMoment
+from .friction import friction_bearing as friction_bearing
+from .friction import palmgren_friction as palmgren_friction
 from .geometry import BallRow as BallRow
 from .geometry import Bearing as Bearing
 from .geometry import RollerRow as RollerRow
@@ -68,9 +74,12 @@ from .rating import ball_capacity_factor as ball_capacity_factor
 from .rating import ball_dynamic_rating as ball_dynamic_rating
 from .rating import capacity_factor as capacity_factor
 from .rating import ratings as ratings
+from .roller_friction import roller_friction as roller_friction
 from .rolling import Equilibrium as Equilibrium
 from .rolling import equilibrium as equilibrium
 from .rolling import three_degrees as three_degrees
+from .skf_friction import skf_friction as skf_friction
+from .skf_friction import sliding_coefficient as sliding_coefficient
 from .stored_energy import energy_of as energy_of
 from .subsurface import Exposure as Exposure
 from .subsurface import HardenedCase as HardenedCase

@@ -88,6 +88,12 @@ class Entry(BaseModel):
     laminae: int = Field(default=LAMINAE, description="laminae of a roller; 0 is the closed form")
     crown: float = Field(default=0.0, description="profile factor over the diameter [-]")
     ratings: Printed | None = Field(default=None, description="ratings as printed in a catalogue")
+    series: str | None = Field(
+        default=None, min_length=1, description="series of a maker's catalogue, for its friction"
+    )
+    seal_diameter: float | None = Field(
+        default=None, gt=0, description="diameter on which both of its seals rub [m], for friction"
+    )
     limiting_speed_rpm: float | None = Field(
         default=None, gt=0, description="that the catalogue allows [1/min]"
     )

@@ -42,6 +42,7 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "nrel_5mw --open",
         "mine.yaml --torque 4e6 --load hub.My=1e6 --hours 50000",
         "mine.yaml --loads 'outputs/*.outb' --site class-II",
+        "grc_750kw --losses",
     ),
     "transient": (
         "mine.yaml stop --value braked=2.5 --open",

@@ -8,7 +8,8 @@ from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.gear_ratings import GearsResult
 
-_TABLES = ("gears", "meshes", "levels", "sharing", "face", "ring", "spectrum")
+LOSS_TABLES = ("losses", "torque along the shafts", "loss levels", "losses over torque")
+_TABLES = ("gears", "meshes", "levels", "sharing", "face", "ring", "spectrum", *LOSS_TABLES)
 
 
 def write_gears(run: Run, page: Page, result: GearsResult) -> None:

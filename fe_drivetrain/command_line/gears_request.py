@@ -98,6 +98,14 @@ class GearsRequest:
             "clearance: up to minutes for each torque.",
         ),
     ] = False
+    losses: Annotated[
+        bool,
+        typer.Option(
+            "--losses",
+            help="Find losses of teeth and bearings, too: efficiency, heat of each part, torque at "
+            "the generator, at the reference torque and over the spectrum.",
+        ),
+    ] = False
     tolerance: Annotated[
         str,
         typer.Option(
@@ -169,6 +177,7 @@ class GearsRequest:
             condensed=self.condensed,
             rollers=self.rollers,
             matrices=self.matrices,
+            losses=self.losses,
             tolerance=parse_tolerance(self.tolerance),
             azimuths=self.azimuths,
             slices=self.slices,

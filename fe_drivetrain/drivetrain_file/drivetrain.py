@@ -18,6 +18,7 @@ from fe_drivetrain.drivetrain_file.turning_parts import (
     Limits,
     Operation,
     RotorBody,
+    Seal,
     ShaftRow,
 )
 from fe_drivetrain.geometry.part import in_its_field, rows_of
@@ -33,10 +34,14 @@ class Gears(Keys):
     bearings: tuple[BearingData, ...] = Field(
         default=(), description="bearings in the housing: of shafts, carriers, suns and gears"
     )
+    seals: tuple[Seal, ...] = Field(
+        default=(), description="seals that rub on shafts, which the losses count"
+    )
 
     _stages = field_validator("stages", mode="before")(rows_of("stage", FILE_KINDS))
     _shafts = field_validator("shafts", mode="before")(rows_of("shaft", ShaftRow))
     _bearings = field_validator("bearings", mode="before")(rows_of("bearing", BearingData))
+    _seals = field_validator("seals", mode="before")(rows_of("seal", Seal))
 
 
 class Drivetrain(Keys):

@@ -89,7 +89,7 @@ def check_turning(
     Raises
     ------
     InputError
-        See above, or a brake is on no shaft, or there are shafts without stages, or the rated
+        See above, or a brake or a seal is on no shaft, or shafts are without stages, or the rated
         torque of the generator contradicts rated power and speed.
     """
     gears = drivetrain.gearbox
@@ -106,6 +106,12 @@ def check_turning(
             f"{', '.join(names)}"
         )
     _check_limit_names(drivetrain, names)
+    for seal in gears.seals:
+        if seal.shaft not in names:
+            raise InputError(
+                f"seal {seal.name!r} rubs on shaft {seal.shaft!r}, which is none: use one of "
+                f"{', '.join(names)}"
+            )
     if not gears.stages and drivetrain.generator is None:
         return
     try:

@@ -379,6 +379,14 @@ class BearingData(_Rolling):
     )
 
 
+class Seal(Part):
+    """A seal that rubs on a shaft of the gearbox, for losses; labyrinths do not rub."""
+
+    name: str = Field(description="name of the seal")
+    shaft: str = Field(description="name of the shaft on which it rubs")
+    diameter: float = dimension(of="diameter on which it rubs", gt=0, le=MAX_GEAR)
+
+
 class Brake(Part):
     """A disc brake."""
 

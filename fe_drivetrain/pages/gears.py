@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fe_drivetrain.pages.gears_losses import losses_section
 from fe_drivetrain.plots.figures import error_range, error_traces
 from fe_drivetrain.report.charts import bars, chart, marked, trace
 from fe_drivetrain.report.number_text import formatted
@@ -38,6 +39,8 @@ def show_gears(run: Run, page: Page, result: GearsResult) -> None:
     _damage(page, result)
     _levels(page, result)
     _geometry(page, result)
+    if result.losses is not None:
+        losses_section(page, result)
 
 
 def _safety(page: Page, result: GearsResult) -> None:

@@ -14,7 +14,7 @@ from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.drivetrain_modes import SHOWN, ModesResult
 from fe_drivetrain.studies.mode_findings import crossing_row, excited, level_rows, mode_rows
-from fe_drivetrain.studies.mode_register import margin_chart, register_rows
+from fe_drivetrain.studies.mode_register import defect_rows, margin_chart, register_rows
 
 DRAWN = 8
 """Number of modes whose shapes are drawn."""
@@ -101,6 +101,10 @@ def _show_register(page: Page, result: ModesResult) -> None:
         [{"verdict": word, "pairs": count} for word, count in counts.items()],
     )
     page.text(_REGISTER)
+    if result.bearing_defects:
+        page.section("Defects of bearings")
+        page.table("Defect frequencies of the rolling bearings", defect_rows(result))
+        page.text(_DEFECTS)
 
 
 def _show_levels(page: Page, result: ModesResult) -> None:
@@ -149,5 +153,13 @@ _SHAPES = (
 _REGISTER = (
     "An excitation can drive a mode where the parts at which it acts have 1 % or more of its "
     "energy: the rotor, gears and generator by their motion, meshes by their strain. Margin: least "
-    "distance of the two frequencies in operation, over that of the mode; near is below 10 %."
+    "distance of the two frequencies in operation, over that of the mode; near is below 10 %. What "
+    "acts with a defect alone counts neither in the answer nor in the chart of margins."
+)
+_DEFECTS = (
+    "Rolling without slip at the contact angle without load; real bearings differ by 1 % or 2 %. "
+    "BPFO and BPFI: rolling elements that pass a place of the outer and of the inner ring; BSF: "
+    "turns of an element, which strikes twice in each; FTF: turns of the cage. Bearings of planets "
+    "in the frame of their carrier, where the ring on the pin stands still: at a sensor in the "
+    "housing, passing planets modulate them."
 )

@@ -5,6 +5,8 @@ from .assessment import StepState as StepState
 from .assessment import assessed as assessed
 from .assessment import claims_of as claims_of
 from .assessment import needed_of as needed_of
+from .bearing_defects import BearingDefects as BearingDefects
+from .bearing_defects import bearing_defects as bearing_defects
 from .certainty import TABLE_4_7 as TABLE_4_7
 from .certainty import lacks_of_inputs as lacks_of_inputs
 from .channels import ChannelFile as ChannelFile

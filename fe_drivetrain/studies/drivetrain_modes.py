@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar, NamedTuple
 
 from fe_drivetrain.common.errors import InputError
@@ -22,12 +22,17 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.dynamics.bodies.damping_ratios import with_damping_ratios
 from fe_drivetrain.dynamics.bodies.roller_matrices import asked_rungs
-from fe_drivetrain.procedure import Excitation, drivetrain_excitations
+from fe_drivetrain.procedure import (
+    BearingDefects,
+    Excitation,
+    bearing_defects,
+    drivetrain_excitations,
+)
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.machine_description import assume_housings
 from fe_drivetrain.studies.mode_charts import campbell_chart, frequency_chart
-from fe_drivetrain.studies.mode_findings import state_modes
+from fe_drivetrain.studies.mode_findings import note_unknown, state_modes
 from fe_drivetrain.studies.mode_levels import compared_levels, frequency_bands, named_rung
 from fe_drivetrain.studies.mode_parts import described
 from fe_drivetrain.studies.mode_record import Modes
@@ -134,13 +139,15 @@ def modes(
     rungs = None
     if condensed:
         rungs = asked_rungs(drivetrain, machine, condensed=True, matrices=matrices, steps=steps)
-    record = _record(drivetrain, machine, asked, acting, over, speed, steps, rungs)
+    defects, unknown = bearing_defects(machine)
+    record = _record(drivetrain, machine, asked, (acting, defects), over, speed, steps, rungs)
     assume_housings(found, asked.rung.assumes)
     if rungs is not None:
         _state_rungs(found, rungs, asked.rung)
     if asked.rung.level is not Level.TORSIONAL:
         _note_housings(found, drivetrain)
     state_modes(found, machine, record, SHOWN)
+    note_unknown(found, unknown)
     options = {"level": level, "generator": generator, "speeds": over, "speed": speed}
     others = [one.name for one in excitations]
     return ModesResult(
@@ -185,7 +192,7 @@ def _record(
     drivetrain: Drivetrain,
     machine: Machine,
     asked: _Asked,
-    acting: tuple[Excitation, ...],
+    exciting: tuple[tuple[Excitation, ...], tuple[BearingDefects, ...]],
     speeds: tuple[float, float] | None,
     speed: float | None,
     steps: Steps,
@@ -205,13 +212,23 @@ def _record(
     with steps.step("bands"):
         count = len(own.frequencies)
         bands = frequency_bands(machine, asked.plain, asked.rung, asked.held, count)
+    acting, defects = exciting
+    parts = solved.energy_shares
+    striking = tuple(one for bearing in defects for one in bearing.excitations(parts))
     with steps.step("modes in operation"):
-        running = in_operation(system, solved, acting, speeds, speed)
+        running = in_operation(system, solved, (*acting, *striking), speeds, speed)
+    names = {one.name for one in striking}
+    by_defects = tuple(one for one in running.meetings if one.excitation in names)
+    others = tuple(one for one in running.meetings if one.excitation not in names)
+    running = replace(running, meetings=others)
     return Modes(
         level=level,
         bands=bands,
         speeds=speeds,
         excitations=acting,
+        bearing_defects=defects,
+        defects=striking,
+        defect_meetings=by_defects,
         ladder=tuple(answers),
         enough=enough,
         tolerance=asked.tolerance,

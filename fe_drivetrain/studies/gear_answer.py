@@ -12,6 +12,7 @@ from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value, formatted, value_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gear_answers import GearAnswer, MeshAnswer, Safety, safeties
+from fe_drivetrain.studies.loss_findings import loss_figures
 from fe_drivetrain.turbine_loads.histories.sites import HOURS_A_YEAR
 
 LEAST_SAFETY = "least safety factor over that required"
@@ -59,6 +60,8 @@ def state_answer(found: Findings, result: Mapping[str, Any]) -> None:
         if safety is not None
     ]
     spread = _spread_figures(found, result["meshes"])
+    if result["losses"] is not None:
+        spread = [*loss_figures(found), *spread]
     if ratings:
         _strength(found, ratings, spread, result)
     elif gears:

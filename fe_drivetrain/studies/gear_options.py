@@ -44,6 +44,9 @@ class GearOptions(HistoryOptions):
         Hours of the life asked for, without a site; None takes 175200, twenty years.
     lubricant : float or None
         Kinematic viscosity of the oil at 40 degC [mm2/s], where the drivetrain states none.
+    losses : bool
+        Whether losses of teeth and bearings are found, too: efficiency, heat of each part, and the
+        torque that arrives at the generator.
 
     Raises
     ------
@@ -61,6 +64,7 @@ class GearOptions(HistoryOptions):
     classes: int = 40
     hours: float | None = None
     lubricant: float | None = None
+    losses: bool = False
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -16,11 +16,13 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gear_answers import GearAnswer, LevelAnswer, MeshAnswer
 from fe_drivetrain.studies.gear_findings import TORQUE_ALONE, gear_chart, state_findings
 from fe_drivetrain.studies.gear_loads import GearLoading, Rows, check_loading, loads_of
+from fe_drivetrain.studies.gear_losses import DrivetrainLosses, check_losses, drivetrain_losses
 from fe_drivetrain.studies.gear_machine import GearTrain, gear_train
 from fe_drivetrain.studies.gear_meshes import GearMesh, gear_meshes
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_spectra import TorqueSpectrum
 from fe_drivetrain.studies.gear_stresses import MeshStresses
+from fe_drivetrain.studies.loss_findings import state_losses
 from fe_drivetrain.studies.rated_gears import GearRating
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.spline_findings import state_splines
@@ -61,6 +63,8 @@ class GearsResult(Result):
         Whose winds weight the files.
     varies : bool
         Whether the spectrum is one of several torques, not the reference torque for all hours.
+    losses : DrivetrainLosses or None
+        Efficiency, heat and torque at the generator; None where they are not asked for.
     """
 
     STUDY: ClassVar[str] = "gears"
@@ -78,6 +82,7 @@ class GearsResult(Result):
     asked: GearOptions
     site: Site | None
     varies: bool
+    losses: DrivetrainLosses | None
 
     def chart(self) -> Chart:
         """Safety factors of all gears with their limits; contact stresses without strength."""
@@ -143,6 +148,10 @@ def gears(
     damage = made.damage()
     answers = made.gear_answers(mesh_answers, damage)
     enough = next(one.name for one in levels if one.difference <= asked.tolerance)
+    losses = None
+    if asked.losses:
+        with steps.step("losses"):
+            losses = drivetrain_losses(drivetrain, train, meshes, left_out, given, asked.lubricant)
     result: dict[str, Any] = {
         "gears": answers,
         "meshes": mesh_answers,
@@ -156,9 +165,12 @@ def gears(
         "asked": asked,
         "site": site,
         "varies": given.varies,
+        "losses": losses,
     }
     if given.alone:
         found.note(TORQUE_ALONE, first=True)
+    if losses is not None:
+        state_losses(found, losses)
     state_findings(found, train, left_out, result)
     state_splines(found, train, given.hub, given.weight)
     stated = _plain(asked, loading, torque)
@@ -198,6 +210,8 @@ def prepared(
     check_loading(options, loading)
     train = gear_train(drivetrain, options, torque)
     meshes, left_out = gear_meshes(train.machine, train.strengths)
+    if options.losses:
+        check_losses(drivetrain, train, options.lubricant)
     return train, meshes, left_out
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from fe_drivetrain.dynamics import Level, Machine
@@ -13,7 +15,7 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.mode_levels import FIRST
 from fe_drivetrain.studies.mode_record import Modes
-from fe_drivetrain.studies.mode_register import register_rows
+from fe_drivetrain.studies.mode_register import defect_rows, register_rows
 from fe_drivetrain.studies.unused import RPM
 
 MARGIN = "least margin of an excited frequency"
@@ -65,6 +67,23 @@ def state_modes(found: Findings, machine: Machine, modes: Modes, shown: int) -> 
     found.assume_all(machine.assumptions())
     figures = _key_figures(found, modes)
     found.answer(QUESTION, _verdict(modes, figures[0]), figures)
+
+
+def note_unknown(found: Findings, names: Sequence[str]) -> None:
+    """Name bearings whose defect frequencies are not known.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes the caution.
+    names : sequence of str
+        Bearings without a catalogue entry.
+    """
+    if names:
+        found.note(
+            f"Defect frequencies of {', '.join(names)} are not known, for want of an entry in the "
+            "bearing catalogue: name one under 'catalogue' in the file."
+        )
 
 
 def band_of(modes: Modes, mode: int) -> float | None:
@@ -167,6 +186,8 @@ def _tables(found: Findings, modes: Modes, shown: int) -> None:
     if modes.speeds is not None:
         found.data("crossings", [crossing_row(one, modes) for one in excited(modes)])
         found.data("register", register_rows(modes))
+    if modes.bearing_defects:
+        found.data("bearing defects", defect_rows(modes))
 
 
 def _check_energy(found: Findings, modes: Modes) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.dynamics import Answer, Level
-from fe_drivetrain.procedure import Excitation, Meeting
+from fe_drivetrain.procedure import BearingDefects, Excitation, Meeting
 from fe_drivetrain.studies.mode_speeds import Campbell
 
 TORSIONAL = "torsional"
@@ -48,6 +48,12 @@ class Modes:
         All that may excite in operation.
     meetings : tuple[Meeting, ...]
         Every excitation against every mode; empty where no speeds are known.
+    bearing_defects : tuple[BearingDefects, ...]
+        Defect frequencies of bearings with a catalogue entry.
+    defects : tuple[Excitation, ...]
+        What defects of these bearings would excite.
+    defect_meetings : tuple[Meeting, ...]
+        Each of them against every mode; empty where no speeds are known.
     ladder : tuple[Answer, ...]
         Frequencies of modes of the finest level at each level, from the simplest.
     enough : Mapping[str, str]
@@ -71,6 +77,9 @@ class Modes:
     campbell: Campbell | None = field(repr=False)
     excitations: tuple[Excitation, ...] = field(repr=False)
     meetings: tuple[Meeting, ...] = field(repr=False)
+    bearing_defects: tuple[BearingDefects, ...] = field(repr=False)
+    defects: tuple[Excitation, ...] = field(repr=False)
+    defect_meetings: tuple[Meeting, ...] = field(repr=False)
     ladder: tuple[Answer, ...] = field(repr=False)
     enough: Mapping[str, str]
     tolerance: float

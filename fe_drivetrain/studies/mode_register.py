@@ -26,6 +26,7 @@ FARTHEST = 1.0
 def nearest_meetings(modes: Modes) -> dict[str, Meeting | None]:
     """By excitation its meeting of the least margin with a mode that it can drive, or None.
 
+    Defects of bearings are among them.
     Where margins are equal, as with several crossings, it is that with most of the mode's energy.
 
     Parameters
@@ -33,12 +34,13 @@ def nearest_meetings(modes: Modes) -> dict[str, Meeting | None]:
     modes : Modes
         With speeds of operation.
     """
-    found: dict[str, Meeting | None] = {one.name: None for one in modes.excitations}
-    for one in modes.meetings:
-        known = found[one.excitation]
+    known = (*modes.excitations, *modes.defects)
+    found: dict[str, Meeting | None] = {one.name: None for one in known}
+    for one in (*modes.meetings, *modes.defect_meetings):
+        nearest = found[one.excitation]
         if one.verdict == "not excited":
             continue
-        if known is None or (one.margin, -one.share) < (known.margin, -known.share):
+        if nearest is None or (one.margin, -one.share) < (nearest.margin, -nearest.share):
             found[one.excitation] = one
     return found
 
@@ -50,15 +52,23 @@ def register_rows(modes: Modes) -> list[Record]:
     ----------
     modes : Modes
         With speeds of operation.
+
+    Returns
+    -------
+    rows : list of Record
+        First all that acts in operation, then what defects of bearings would excite.
     """
     if modes.speeds is None:
         return []
     low, high = modes.speeds
     nearest = nearest_meetings(modes)
+    meetings = (*modes.meetings, *modes.defect_meetings)
+    defects = {one.name for one in modes.defects}
     rows: list[Record] = []
-    for one in modes.excitations:
+    for one in (*modes.excitations, *modes.defects):
         row: Record = {
             "excitation": one.name,
+            "acts": "with a defect" if one.name in defects else "always",
             "periods in a turn of the rotor": one.per_turn or None,
             "at the least speed [Hz]": one.frequency(low),
             "at the largest speed [Hz]": one.frequency(high),
@@ -68,9 +78,7 @@ def register_rows(modes: Modes) -> list[Record]:
             rest: Record = dict.fromkeys(_OF_MODE, None)
             rows.append({**row, **rest, "crossings": 0, "verdict": "drives no mode"})
             continue
-        crossings = sum(
-            m.excitation == one.name and m.verdict == "resonance" for m in modes.meetings
-        )
+        crossings = sum(m.excitation == one.name and m.verdict == "resonance" for m in meetings)
         of_mode = (
             met.mode,
             modes.kinds[met.mode - 1],
@@ -98,6 +106,32 @@ _OF_MODE = (
     "share of its energy [%]",
     "least margin [%]",
 )
+
+
+def defect_rows(modes: Modes) -> list[Record]:
+    """Defect frequencies of each bearing, per turn of the rotor and at the largest speed.
+
+    Parameters
+    ----------
+    modes : Modes
+        With defects of its bearings.
+    """
+    rows: list[Record] = []
+    for one in modes.bearing_defects:
+        row: Record = {
+            "bearing": one.name,
+            "catalogue entry": one.entry,
+            "rows": one.rows,
+            "elements of a row": one.elements,
+            "speed of a ring over the rotor's": one.speed_ratio,
+        }
+        kinds = one.per_turn.by_name()
+        row |= {f"{kind} in a turn of the rotor": value for kind, value in kinds.items()}
+        if modes.speeds is not None:
+            turns = modes.speeds[1] / (2.0 * np.pi)
+            row |= {f"{kind} [Hz]": turns * value for kind, value in kinds.items()}
+        rows.append(row)
+    return rows
 
 
 def margins_of(excitation: Excitation, modes: Modes, speeds: Floats) -> Floats:
@@ -134,7 +168,11 @@ def margin_chart(modes: Modes) -> Chart | None:
     """
     if modes.speeds is None:
         return None
-    near = [one for one in nearest_meetings(modes).values() if one and one.margin < FARTHEST]
+    acting = {one.name for one in modes.excitations}
+    nearest = nearest_meetings(modes)
+    near = [
+        one for name, one in nearest.items() if one and name in acting and one.margin < FARTHEST
+    ]
     near.sort(key=lambda one: (one.margin, -one.share))
     names = [one.excitation for one in near[:DRAWN]]
     if not names:
