@@ -42,6 +42,11 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "mine.yaml --torque 4e6 --load hub.My=1e6 --hours 50000",
         "mine.yaml --loads 'outputs/*.outb' --site class-II",
     ),
+    "strength": (
+        "mine.yaml --loads 'outputs/*.outb' --site class-II",
+        "mine.yaml --load hub.My=1e6 --load hub.Mx=2e6 --rotor-speed 12 --rigid",
+        "mine.yaml --loads outputs --set shaft.sections.0.fillet=0.03",
+    ),
     "transient": (
         "mine.yaml stop --value braked=2.5 --open",
         "mine.yaml operation --loads 'outputs/*.outb' --level rigid",
