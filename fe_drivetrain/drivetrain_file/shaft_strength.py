@@ -131,7 +131,9 @@ class ShaftStrength(Part):
         le=3,
         source="assumed: none",
     )
-    hard_surface: bool = Field(default=False, description="whether the surface is hardened")
+    surface: Literal["soft", "hardened"] = Field(
+        default="soft", description="soft as the core, or hardened"
+    )
     mean_stress: Literal[1, 2] = Field(
         default=2,
         description="case of DIN 743-1: 1, mean stress stays as amplitudes grow; 2, both grow",

@@ -255,7 +255,7 @@ def _along_fillet(
     load: str, mesh: Meridian, material: Material, n: int, u: Floats, radius: float
 ) -> Peak:
     centre = np.array([radius, 0.5 + radius])
-    near = 1e-6 * radius
+    near = 1e-3 * radius  # between the nodes of low orders a side is beside the arc
     arc = mesh.sides(lambda x, r: np.abs(np.hypot(x - centre[0], r - centre[1]) - radius) < near)
     along = np.linspace(0.0, 1.0, 33)
     rows = []

@@ -94,7 +94,7 @@ def steel_of(stated: ShaftStrength) -> SteelData:
         stated.reference_diameter,
         stated.roughness,
         stated.hardening,
-        stated.hard_surface,
+        stated.surface == "hardened",
     )
 
 
