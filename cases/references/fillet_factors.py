@@ -13,27 +13,11 @@ import numpy as np
 
 from fe_drivetrain.common import Floats
 from fe_drivetrain.drivetrain_file import MATERIALS
-from fe_drivetrain.elasticity.revolution import (
-    Meridian,
-    Traction,
-    Where,
-    along_sides,
-    dofs,
-    harmonic_response,
-    meridian,
-    stresses,
-    surface_loads,
-)
-from fe_drivetrain.geometry import Section, Shaft
+from fe_drivetrain.geometry import Shaft
+from fe_drivetrain.shafts import strength
+from fe_drivetrain.shafts.strength import PER_FILLET, Peak, Shoulder
 
 STEEL = MATERIALS["steel"]
-
-LOADS = ("tension", "bending", "torsion")
-
-#: Length of shaft on either side of the shoulder, in the larger diameter: what the shoulder adds to
-#: the exact end stresses has died down to 1e-4 or less there (the slowest of the axisymmetric end
-#: effects decays as exp(-2.72 x / R), from the first root of g^2 (J0^2 + J1^2) = 2 (1 - nu) J1^2).
-REACH = 2.0
 
 PETERSON = (
     "Pilkey and Pilkey 2008, Peterson's Stress Concentration Factors, 3rd ed., charts 3.4, "
@@ -43,9 +27,6 @@ TIPTON = (
     "Tipton, Sorem and Rolovic 1996, J. Mech. Des. 118, 321-327, as in Pilkey and Pilkey 2008, "
     "chapter 3"
 )
-
-PER_FILLET = 8
-"""Elements along the fillet."""
 
 OF_A_FIT = 0.05
 """Relative; two published fits of Peterson's charts differ by as much."""
@@ -152,14 +133,7 @@ def of_a_fit(load: str, wide: float, radius: float) -> float:
 
 def shouldered(wide: float, radius: float) -> Shaft:
     """A solid shaft, D for x < 0 and d = 1 m behind, with a fillet."""
-    length = REACH * wide
-    return Shaft(
-        front=-length,
-        sections=(
-            Section(length=length, outer_diameter=wide, fillet=radius),
-            Section(length=length, outer_diameter=1.0),
-        ),
-    )
+    return strength.shouldered(Shoulder(1.0, wide, radius))
 
 
 def end_stress(load: str, places: Floats, diameter: float) -> Floats:
@@ -167,81 +141,12 @@ def end_stress(load: str, places: Floats, diameter: float) -> Floats:
 
     Saint-Venant's, exact far from the shoulder: uniform, linear in the height, or in the radius.
     """
-    r = places[:, 1]
-    zero = np.zeros_like(r)
-    if load == "tension":
-        return np.column_stack([zero + 1.0 / diameter**2, zero, zero])
-    linear = 2.0 * r / diameter**4
-    return np.column_stack([linear, zero, zero] if load == "bending" else [zero, zero, linear])
-
-
-@dataclass(frozen=True)
-class Peak:
-    """The largest stress of a fillet.
-
-    Attributes
-    ----------
-    factor : float
-        K_t: of largest principal, in torsion of shear stress, over the nominal one in d.
-    angle : float
-        Where it is on the arc, from the end on the thinner shaft [degrees].
-    profile : Floats
-        (k, 2) angle and local factor along the arc.
-    """
-
-    factor: float
-    angle: float
-    profile: Floats
+    return strength.end_stress(load, places, diameter)
 
 
 def peak(load: str, wide: float, radius: float, per_fillet: int, order: int = 5) -> Peak:
     """K_t by elements of the meridian, with exact stresses on both ends."""
-    shaft = shouldered(wide, radius)
-    mesh = meridian(shaft, 0.35, order=order, layers=0, per_fillet=per_fillet)
-    n = 1 if load == "bending" else 0
-    F = np.zeros(3 * len(mesh.nodes))
-    for x, diameter in ((shaft.front, wide), (shaft.rear, 1.0)):
-        F += surface_loads(mesh, n, mesh.sides(_at(x)), _traction(load, diameter))
-    rear = mesh.where(lambda x, r: x > shaft.rear - 1e-9)
-    outer = rear[mesh.nodes[rear, 1].argmax()]
-    held = np.array([dofs(outer, 0), dofs(outer, 2 if n == 0 else 1)])
-    u = harmonic_response(mesh, STEEL, n, F, (held, np.zeros(2))).u[..., 0]
-    return _along_fillet(load, mesh, n, u, radius)
-
-
-def _at(x: float) -> Where:
-    return lambda along, radius: np.abs(along - x) < 1e-9
-
-
-def _traction(load: str, diameter: float) -> Traction:
-    return lambda at, normal: end_stress(load, at, diameter) * normal[:, :1]
-
-
-def _along_fillet(load: str, mesh: Meridian, n: int, u: Floats, radius: float) -> Peak:
-    centre = np.array([radius, 0.5 + radius])
-    near = 1e-6 * radius
-    arc = mesh.sides(lambda x, r: np.abs(np.hypot(x - centre[0], r - centre[1]) - radius) < near)
-    along = np.linspace(0.0, 1.0, 33)
-    rows = []
-    for side in np.unique(arc[:, 1]):
-        cells = arc[arc[:, 1] == side, 0]
-        at = along_sides(mesh, int(side), cells, along)[1]
-        s = stresses(mesh, STEEL, n, u, mesh.element.side_places(int(side), along), cells)
-        angle = np.degrees(np.arctan2(centre[0] - at[..., 0], centre[1] - at[..., 1]))
-        rows.append(np.column_stack([angle.ravel(), local_factor(load, s).ravel()]))
-    profile = np.vstack(rows)
-    profile = profile[profile[:, 0].argsort()]
-    top = profile[:, 1].argmax()
-    return Peak(float(profile[top, 1]), float(profile[top, 0]), profile)
-
-
-def local_factor(load: str, s: Floats) -> Floats:
-    """(...) largest principal stress of (..., 6) where the cosine is 1; in torsion shear stress."""
-    xx, rr, tt, xr, xt, rt = np.moveaxis(s, -1, 0)
-    if load == "torsion":
-        return np.asarray(np.hypot(xt, rt))
-    in_plane = (xx + rr) / 2.0 + np.hypot((xx - rr) / 2.0, xr)
-    return np.asarray(np.maximum(in_plane, tt))
+    return strength.fillet_peak(load, Shoulder(1.0, wide, radius), per_fillet, STEEL, order)
 
 
 @dataclass(frozen=True)
@@ -267,5 +172,5 @@ class Factor:
 
 def factor(load: str, wide: float, radius: float, per_fillet: int = PER_FILLET) -> Factor:
     """K_t with its band, from two meshes."""
-    rough, fine = (peak(load, wide, radius, n) for n in (3 * per_fillet // 4, per_fillet))
-    return Factor(wide, radius, fine, abs(fine.factor - rough.factor))
+    found = strength.fillet_factor(load, Shoulder(1.0, wide, radius), STEEL, per_fillet)
+    return Factor(wide, radius, found.peak, found.band)

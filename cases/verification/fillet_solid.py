@@ -7,6 +7,7 @@ from fe_drivetrain.comparison import DOUBTFUL, richardson
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, Target
+from fe_drivetrain.shafts.strength import LOADS
 
 #: D/d, r/d.
 WIDE, RADIUS = 1.6, 0.25
@@ -27,8 +28,7 @@ def run(run: Run, page: Page) -> None:
     """Tension, bending and torsion on one mesh, two meshes."""
     with run.step("meridian"):
         flat = {
-            load: fillet_factors.factor(load, WIDE, RADIUS, 4 if run.quick else 8)
-            for load in fillet_factors.LOADS
+            load: fillet_factors.factor(load, WIDE, RADIUS, 4 if run.quick else 8) for load in LOADS
         }
     meshes = QUICK if run.quick else PER_FILLET
     solids = [

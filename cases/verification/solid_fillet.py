@@ -14,6 +14,7 @@ from fe_drivetrain.elasticity.mesh import Mesh, generate
 from fe_drivetrain.elasticity.operator import Traction, nodal_stresses, tensor, traction_loads
 from fe_drivetrain.elasticity.solve import solve_solid
 from fe_drivetrain.geometry import LocalSizes, MeshSizes, Shaft
+from fe_drivetrain.shafts.strength import LOADS
 
 SIZES = MeshSizes(shaft=0.4, elements_per_turn=12)
 """Away from the fillet, in the thinner diameter."""
@@ -91,10 +92,10 @@ def solve(wide: float, radius: float, per_fillet: int) -> SolidFillet:
     shaft = fillet_factors.shouldered(wide, radius)
     mesh = _fine_at_fillet(shaft, radius, per_fillet)
     points = mesh.points
-    F = np.zeros((points.size, len(fillet_factors.LOADS)))
+    F = np.zeros((points.size, len(LOADS)))
     for face, diameter, sign in (("front", wide, -1.0), ("rear", 1.0, 1.0)):
         facets = mesh.faces[f"shaft.{face}"]
-        for column, load in enumerate(fillet_factors.LOADS):
+        for column, load in enumerate(LOADS):
             F[:, column] += traction_loads(points, facets, _traction(load, diameter, sign))
     # three nodes of the rear face hold the shaft as a whole, and carry nothing
     rear = mesh.face_nodes("shaft.rear")
@@ -114,7 +115,7 @@ def solve(wide: float, radius: float, per_fillet: int) -> SolidFillet:
     arc = np.cos(angle)[:, None] * along_x - np.sin(angle)[:, None] * outward
     circle = np.cross(along_x, outward)
     stress = {}
-    for column, load in enumerate(fillet_factors.LOADS):
+    for column, load in enumerate(LOADS):
         s = tensor(
             nodal_stresses(points, mesh.cells, found.u[:, column], fillet_factors.STEEL.lame)[near]
         )

@@ -38,6 +38,7 @@ from fe_drivetrain.command_line.run import (
     run_command,
 )
 from fe_drivetrain.command_line.settings import CaseSettings
+from fe_drivetrain.command_line.strength import strength_command
 from fe_drivetrain.command_line.studies import advise_command, check_command
 from fe_drivetrain.command_line.study import study_command
 from fe_drivetrain.command_line.terminal import ended, prepare_streams, write
@@ -66,6 +67,7 @@ _COMMANDS: tuple[tuple[str, str, Callable[..., None]], ...] = (
     (_STUDY, "loads", loads_command),
     (_STUDY, "life", life_command),
     (_STUDY, "gears", gears_command),
+    (_STUDY, "strength", strength_command),
     (_STUDY, "transient", transient_command),
     (_STUDY, "compare", compare_command),
     (_STUDY, "uncertainty", uncertainty_command),

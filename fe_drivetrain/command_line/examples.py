@@ -44,6 +44,11 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "mine.yaml --loads 'outputs/*.outb' --site class-II",
         "grc_750kw --losses",
     ),
+    "strength": (
+        "mine.yaml --loads 'outputs/*.outb' --site class-II",
+        "mine.yaml --load hub.My=1e6 --load hub.Mx=2e6 --rotor-speed 12 --rigid",
+        "mine.yaml --loads outputs --set shaft.sections.0.fillet=0.03",
+    ),
     "transient": (
         "mine.yaml stop --value braked=2.5 --open",
         "mine.yaml operation --loads 'outputs/*.outb' --level rigid",

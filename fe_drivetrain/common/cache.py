@@ -34,7 +34,14 @@ LIMIT = 2 * 1024**3
 """Bytes; beyond it, what was used longest ago is dropped."""
 
 Kind = Literal[
-    "figures", "gear-spectra", "hub-loads", "life-digests", "load-digests", "meshes", "solutions"
+    "figures",
+    "gear-spectra",
+    "hub-loads",
+    "life-digests",
+    "load-digests",
+    "meshes",
+    "shaft-strength",
+    "solutions",
 ]
 """What may be kept; each kind has a folder of its own."""
 

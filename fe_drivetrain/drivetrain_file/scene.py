@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import (
     Field,
+    field_validator,
     model_validator,
 )
 
@@ -20,10 +21,12 @@ from fe_drivetrain.drivetrain_file.gate import check_scene
 from fe_drivetrain.drivetrain_file.joint_springs import as_numbers, free_to_turn, joint_stiffness
 from fe_drivetrain.drivetrain_file.materials import MATERIALS, Material, known_materials
 from fe_drivetrain.drivetrain_file.nose import Nose, NoseBearing
+from fe_drivetrain.drivetrain_file.shaft_strength import ShaftStrength
 from fe_drivetrain.drivetrain_file.shared_parts import coupled_units
 from fe_drivetrain.drivetrain_file.turning_gate import check_turning
 from fe_drivetrain.drivetrain_file.turning_parts import MAX_INERTIA, BearingData, ShaftRow
 from fe_drivetrain.geometry import Band, Housing, MeshSizes, Shaft, within_walls
+from fe_drivetrain.geometry.part import in_its_field
 
 #: How a reference point holds its face: as its mean motion (RBE3) or as a rigid body (RBE2).
 Coupling = Literal["averaged", "rigid"]
@@ -139,6 +142,7 @@ class Scene(Drivetrain):
     gearbox: Gearbox
     load_points: tuple[LoadPoint, ...] = ()
     materials: Mapping[str, Material] = {}
+    strength: ShaftStrength | None = None
     mesh: MeshSizes = MeshSizes()
     uncertainty: Mapping[str, Spread] = {}
     temperatures: Mapping[str, Temperature] = Field(
@@ -147,9 +151,13 @@ class Scene(Drivetrain):
         "'NAME.housing' [degC]; 'assembled' is that of all others, 20 if left out",
     )
 
+    _strength = field_validator("strength", mode="wrap")(in_its_field)
+
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
         check_scene(self, self.gearbox.stiffness, [point.name for point in self.load_points])
+        if self.strength is not None:
+            self.strength.check_fits(self.shaft)
         check_spreads(self, self.uncertainty)
         check_temperatures(self)
         if self.states_gears or self.limits:

@@ -1,4 +1,5 @@
 from . import beam as beam
 from . import fidelity as fidelity
 from . import response as response
+from . import strength as strength
 from . import uncertainty as uncertainty

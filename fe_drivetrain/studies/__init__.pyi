@@ -42,8 +42,11 @@ from .scene_study import StudyResult as StudyResult
 from .scene_study import study as study
 from .seat_stiffness import SeatStiffness as SeatStiffness
 from .seat_stiffness import seat_stiffness as seat_stiffness
+from .shaft_strength import StrengthResult as StrengthResult
+from .shaft_strength import strength as strength
 from .solved_assembly import Assembly as Assembly
 from .solved_assembly import solved_assembly as solved_assembly
+from .strength_options import StrengthOptions as StrengthOptions
 from .study_loads import StudyLoads as StudyLoads
 from .tilt_secants import TiltSecant as TiltSecant
 from .transient_parts import DamageOptions as DamageOptions

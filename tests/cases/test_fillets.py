@@ -5,6 +5,7 @@ import pytest
 
 from fe_drivetrain.cases.references import fillet_factors
 from fe_drivetrain.cases.verification.solid_fillet import fitted_peak
+from fe_drivetrain.shafts.strength import LOADS
 
 
 @pytest.mark.parametrize("load", ["tension", "bending"])
@@ -16,7 +17,7 @@ def test_both_ranges_of_a_fit_meet(load, wide):
     assert low == pytest.approx(high, rel=0.02)
 
 
-@pytest.mark.parametrize("load", fillet_factors.LOADS)
+@pytest.mark.parametrize("load", LOADS)
 def test_published_factors_fall_with_the_radius_and_rise_with_the_step(load):
     formulae = (
         [fillet_factors.peterson]
@@ -42,7 +43,7 @@ def test_outside_its_range_a_fit_says_nothing():
     assert np.isnan(fillet_factors.peterson("bending", 3.0, 0.04))  # t/r = 25
 
 
-@pytest.mark.parametrize("load", fillet_factors.LOADS)
+@pytest.mark.parametrize("load", LOADS)
 def test_factor_has_settled_and_far_from_the_shoulder_stress_is_nominal(load):
     found = fillet_factors.factor(load, 1.5, 0.2)
     assert found.band < 1e-3 * found.peak.factor
