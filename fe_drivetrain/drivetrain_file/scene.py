@@ -141,7 +141,7 @@ class Scene(Drivetrain):
     def _consistent(self) -> "Scene":
         check_scene(self, self.gearbox.stiffness, [point.name for point in self.load_points])
         check_spreads(self, self.uncertainty)
-        if self.states_gears or self.limits:
+        if self.states_gears or self.limits or self.whirl:
             check_turning(self, main_shaft(self), main_bearings(self))
         return self
 

@@ -1,0 +1,1 @@
+"""Whirl of shafts on bearings: modes over speed, critical speeds, unbalance, stability."""
