@@ -42,6 +42,8 @@ from .scene_study import StudyResult as StudyResult
 from .scene_study import study as study
 from .seat_stiffness import SeatStiffness as SeatStiffness
 from .seat_stiffness import seat_stiffness as seat_stiffness
+from .shaft_whirl import WhirlResult as WhirlResult
+from .shaft_whirl import whirl as whirl
 from .solved_assembly import Assembly as Assembly
 from .solved_assembly import solved_assembly as solved_assembly
 from .study_loads import StudyLoads as StudyLoads
@@ -50,3 +52,4 @@ from .transient_parts import DamageOptions as DamageOptions
 from .transient_result import TransientResult as TransientResult
 from .turning_advice import TurningAdvice as TurningAdvice
 from .turning_advice import advise_turning as advise_turning
+from .whirl_charts import campbell_of as campbell_of
