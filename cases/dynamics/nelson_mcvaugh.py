@@ -101,7 +101,7 @@ def run(run: Run, page: Page) -> None:
             "the Campbell diagram, largest relative difference",
             float(np.abs(found.crossings[order] / found.speeds[order] - 1).max()),
             within=1e-8,
-            why="round-off of an unsymmetric eigenproblem",
+            why="round-off of two eigenproblems",
             source="crossings by bisection",
             basis="self-consistency",
         )

@@ -1,4 +1,4 @@
-"""Rotors of the literature whose whirl is published: Nelson and McVaugh 1976, Zorzi and Nelson 1977.
+"""Rotors whose whirl is published: Nelson and McVaugh 1976, Zorzi and Nelson 1977.
 
 Dimensions and speeds are those of verification manuals of finite-element programs (VM247, VM263 and
 VM261), which print the papers' values.

@@ -37,6 +37,13 @@ def show_whirl(run: Run, page: Page, result: WhirlResult) -> None:
         if rows:
             page.table(f"Critical speeds of {shaft.name}", rows)
         page.add(response_chart(shaft))
+    if "rollers" in result.tables:
+        page.section("Rollers")
+        page.table(
+            "Stiffness of bearings by their rollers over the speed of operation",
+            result.tables["stiffness over speed"],
+        )
+        page.table("Centrifugal forces of rollers at the largest speed", result.tables["rollers"])
     page.section("Levels of the model")
     errors = ladder_chart(result.shafts)
     if errors is not None:

@@ -53,3 +53,6 @@ from .transient_result import TransientResult as TransientResult
 from .turning_advice import TurningAdvice as TurningAdvice
 from .turning_advice import advise_turning as advise_turning
 from .whirl_charts import campbell_of as campbell_of
+from .whirl_record import ShaftWhirl as ShaftWhirl
+from .whirl_shafts import ShaftRotor as ShaftRotor
+from .whirl_shafts import shaft_rotors as shaft_rotors

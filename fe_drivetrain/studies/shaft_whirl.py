@@ -16,12 +16,12 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.comparison import grid_convergence
 from fe_drivetrain.drivetrain_file import Drivetrain
-from fe_drivetrain.dynamics import Level, Machine, System, machine_of, machine_system
-from fe_drivetrain.dynamics.bodies.roller_matrices import asked_rungs
+from fe_drivetrain.dynamics import Level, System, machine_of, machine_system
 from fe_drivetrain.dynamics.whirl.modes import (
     Critical,
     chart_criticals,
     critical_speeds,
+    is_damped,
     stability_limit,
     whirl_chart,
 )
@@ -31,8 +31,9 @@ from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.whirl_charts import whirl_campbell
-from fe_drivetrain.studies.whirl_findings import state_whirl
+from fe_drivetrain.studies.whirl_findings import state_rollers, state_whirl
 from fe_drivetrain.studies.whirl_record import Rung, ShaftWhirl, excited_critical
+from fe_drivetrain.studies.whirl_rollers import roller_tables
 from fe_drivetrain.studies.whirl_shafts import ShaftRotor, critical_in_drivetrain, shaft_rotors
 
 PARTS = 2
@@ -97,7 +98,8 @@ def whirl(
         operation.
     matrices : bool
         Whether gearbox bearings with a catalogue entry have the 6 x 6 stiffness of their rollers at
-        rated torque.
+        three speeds of operation, under a torque that goes with the square of the speed up to the
+        rated one; see `roller_tables`.
     report : Progress
         Called with the name of each step as it begins.
 
@@ -116,12 +118,13 @@ def whirl(
             f"whirl of {drivetrain.title!r} needs what its file does not state: "
             f"{', '.join(machine.not_given)}: add it"
         )
+    rollers = None
     if matrices:
         with steps.step("stiffness of rollers"):
-            machine = _on_rollers(drivetrain, machine)
+            rollers = roller_tables(drivetrain, machine, over)
     system = machine_system(machine, Level.FLEXIBLE, held_generator=True)
     shafts = []
-    for shaft in shaft_rotors(machine, drivetrain.whirl):
+    for shaft in shaft_rotors(machine, drivetrain.whirl, rollers):
         with steps.step(shaft.name):
             shafts.append(shaft_whirl(shaft, over, system))
     if not shafts:
@@ -130,6 +133,8 @@ def whirl(
             "or diameters of its shafts"
         )
     state_whirl(found, machine, drivetrain.whirl, shafts)
+    if rollers is not None:
+        state_rollers(found, rollers)
     options = {"speeds": over, "matrices": matrices}
     return WhirlResult(shafts=tuple(shafts), speeds=over, **found.frozen(steps.times, **options))
 
@@ -160,8 +165,8 @@ def shaft_whirl(shaft: ShaftRotor, speeds: tuple[float, float], system: System) 
         bands=_bands(shaft, limit, criticals),
         crossings=tuple(chart_criticals(rotor, limit)),
         chart=whirl_chart(rotor, chart_speeds.tolist(), SHOWN),
-        damped=_is_damped(rotor),
-        unstable_from=stability_limit(rotor, limit) if _is_damped(rotor) else None,
+        damped=is_damped(rotor),
+        unstable_from=stability_limit(rotor, limit) if is_damped(rotor) else None,
         response=_response(shaft, rotor, high, limit),
         bearings=tuple(one.name for one in rotor.bearings),
         without_meshes=_without_meshes(shaft, limit),
@@ -190,18 +195,6 @@ def _speeds(drivetrain: Drivetrain, speeds: tuple[float, float] | None) -> tuple
     return over
 
 
-def _on_rollers(drivetrain: Drivetrain, machine: Machine) -> Machine:
-    """The machine with the stiffness of rollers in its bearings."""
-    own = asked_rungs(drivetrain, machine, matrices=True).rungs[-1].flexible.bearings
-    rows = [
-        row.model_copy(update={"stiffness": tuple(map(tuple, own[row.name].tolist()))})
-        if row.name in own
-        else row
-        for row in machine.bearings
-    ]
-    return machine.model_copy(update={"bearings": tuple(rows)})
-
-
 def _limit(rotor: Rotor, high: float) -> float:
     """Highest speed that is looked at [rad/s]."""
     everything = [one for one in critical_speeds(rotor, 1e3 * high)]
@@ -223,13 +216,6 @@ def _bands(shaft: ShaftRotor, limit: float, criticals: Sequence[Critical]) -> Fl
         open_left = grid_convergence([1 / p for p in SERIES], own, min_order=1.0).uncertainty
         found.append(max(abs(one.speed - own[-1]) + open_left, ROUND_OFF * one.speed))
     return np.array(found)
-
-
-def _is_damped(rotor: Rotor) -> bool:
-    """Whether anything damps."""
-    return bool(
-        rotor.viscous or rotor.loss_factor or any(one.damping.any() for one in rotor.bearings)
-    )
 
 
 def _response(shaft: ShaftRotor, rotor: Rotor, high: float, limit: float) -> UnbalanceResponse:

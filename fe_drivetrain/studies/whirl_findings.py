@@ -17,12 +17,13 @@ from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.mode_findings import SMALL
 from fe_drivetrain.studies.unused import RPM
 from fe_drivetrain.studies.whirl_record import ShaftWhirl, is_excited
+from fe_drivetrain.studies.whirl_rollers import RollerTables
 
 QUESTION = "At which speeds do the shafts whirl, and how far are these from operation?"
 CRITICAL = "first critical speed of {} that unbalance excites [rpm]"
 AGREE = 1e-6
-"""Relative difference of criticals by both ways that is round-off: an eigenvalue of an unsymmetric
-matrix keeps 1e-16 of the largest, which stiff supports lift to some 1e10 times the least."""
+"""Relative difference of criticals by both ways that is round-off: stiff supports are some
+1e10 times as stiff as a shaft."""
 
 
 def state_whirl(
@@ -66,6 +67,39 @@ def state_whirl(
             "of stability, and whirl at a critical speed has no bound."
         )
     found.answer(QUESTION, _verdict(shafts), figures, cautions=cautions)
+
+
+def state_rollers(found: Findings, rollers: RollerTables) -> None:
+    """State at which torques rollers were put into equilibrium, and what centrifugal forces are.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes it.
+    rollers : RollerTables
+        Stiffness of rollers over the speed.
+    """
+    found.data("rollers", list(rollers.rows))
+    found.data(
+        "stiffness over speed",
+        [
+            {
+                "bearing": name,
+                "speed of the rotor [rpm]": float(speed) * RPM,
+                "torque of the rotor [kN m]": float(torque) / 1e3,
+                **{f"{m} [N/m]": float(K[i, i]) for i, m in ((1, "along y"), (2, "along z"))},
+            }
+            for name, values in rollers.stiffness.items()
+            for speed, torque, K in zip(rollers.speeds, rollers.torques, values, strict=True)
+        ],
+    )
+    key = "centrifugal force over that load, at most [%]"
+    shares = [float(row[key]) for row in rollers.rows if isinstance(row[key], float)]
+    if shares:
+        found.note(
+            "Centrifugal forces of rollers are left out: at most "
+            f"{formatted(max(shares), 2)}\u00a0% of the load of the most loaded roller."
+        )
 
 
 def critical_rows(shaft: ShaftWhirl) -> list[Record]:
@@ -144,7 +178,7 @@ def _check_both_ways(found: Findings, shaft: ShaftWhirl) -> None:
         "largest relative difference, 1 where one is missing",
         apart if same else 1.0,
         within=AGREE,
-        why="round-off of an unsymmetric eigenproblem on stiff supports",
+        why="round-off of eigenproblems on stiff supports",
         source="crossings of damped-free whirl with once a turn, by bisection",
         basis="self-consistency",
     )

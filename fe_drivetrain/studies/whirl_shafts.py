@@ -12,7 +12,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import along_x, wrench_transport
 from fe_drivetrain.drivetrain_file.turning_parts import BearingData
-from fe_drivetrain.drivetrain_file.whirl_data import WhirlBearing, WhirlData
+from fe_drivetrain.drivetrain_file.whirl_data import WhirlData
 from fe_drivetrain.dynamics import Body, Level, Machine, System
 from fe_drivetrain.dynamics.whirl.modes import synchronous
 from fe_drivetrain.dynamics.whirl.rotor import (
@@ -27,9 +27,10 @@ from fe_drivetrain.dynamics.whirl.rotor import (
     rotor_of,
 )
 from fe_drivetrain.dynamics.whirl.unbalance import Unbalance, balance_moment
-from fe_drivetrain.export.turning_lines import Beam, Coupling, Line, Link, Support, turning_lines
+from fe_drivetrain.export.turning_lines import Beam, Coupling, Line, Link, turning_lines
 from fe_drivetrain.shafts.beam.frame import round_section
 from fe_drivetrain.studies.whirl_record import EXCITED
+from fe_drivetrain.studies.whirl_rollers import RollerTables
 
 SLICES = 4
 """Uniform elements of a tapered piece."""
@@ -143,7 +144,9 @@ class ShaftRotor:
         return [Unbalance(node, balance_moment(grade, self.mass, highest))]
 
 
-def shaft_rotors(machine: Machine, whirl: WhirlData | None) -> list[ShaftRotor]:
+def shaft_rotors(
+    machine: Machine, whirl: WhirlData | None, rollers: RollerTables | None = None
+) -> list[ShaftRotor]:
     """The shafts of a machine that bend or tilt, as rotors.
 
     A shaft has the bodies at its ends, a carrier with the masses of its planets. Bodies of the next
@@ -155,6 +158,8 @@ def shaft_rotors(machine: Machine, whirl: WhirlData | None) -> list[ShaftRotor]:
         The machine.
     whirl : WhirlData or None
         Damping, unbalance, and bearings over the speed, where the file states them.
+    rollers : RollerTables or None
+        Stiffness of bearings by their rollers, of those that the file has none over the speed of.
     """
     own = whirl or WhirlData()
     lines, couplings = turning_lines(machine, Level.FLEXIBLE)
@@ -171,7 +176,7 @@ def shaft_rotors(machine: Machine, whirl: WhirlData | None) -> list[ShaftRotor]:
             pairs = [(line, (before, behind), planets)]
         for part, of, carried in pairs:
             if _turns_on_bearings(part):
-                found.append(_shaft(machine, part, of, carried, own))
+                found.append(_shaft(machine, part, of, carried, (own, rollers)))
     return found
 
 
@@ -236,8 +241,9 @@ def _shaft(
     line: Line,
     couplings: tuple[Coupling | None, Coupling | None],
     planets: Sequence[Body],
-    whirl: WhirlData,
+    stated_of: tuple[WhirlData, RollerTables | None],
 ) -> ShaftRotor:
+    whirl, rollers = stated_of
     first = line.planets
     bodies, pieces = line.bodies[first:], line.pieces[first:]
     parts: list[Element | Joint] = []
@@ -267,9 +273,10 @@ def _shaft(
             bearings.append(bearing_of(support.name, nodes[at], support.stiffness, None, (0.0,)))
             continue
         place = _place(machine, line, stated) - bodies[at].position[0]
-        bearings.append(
-            _bearing(stated, whirl.of_bearing(stated.name), nodes[at], place, mirrored, support)
-        )
+        W = wrench_transport(along_x(place))
+        speeds, K, C = _over_speed(stated.name, whirl, rollers, abs(line.speed))
+        own = support.stiffness if K is None else W @ K @ W.T
+        bearings.append(bearing_of(stated.name, nodes[at], own, W @ C @ W.T, speeds, mirrored))
     for coupling, node, end in zip(couplings, (nodes[0], nodes[-1]), (-1, 0), strict=True):
         if coupling is not None:
             K = _of_end(coupling, end)
@@ -313,25 +320,18 @@ def _place(machine: Machine, line: Line, bearing: BearingData) -> float:
     return centres[bearing.holds] + bearing.at
 
 
-def _bearing(
-    row: BearingData,
-    stated: WhirlBearing | None,
-    node: int,
-    arm: float,
-    mirrored: bool,
-    support: Support,
-) -> Bearing:
-    """A bearing at its node, as its row has it or as it is stated over the speed."""
-    own = support.stiffness
-    if stated is None:
-        return bearing_of(row.name, node, own, mirrored=mirrored)
-    W = wrench_transport(along_x(arm))
-    damping = W @ np.diag(stated.damping) @ W.T
-    if not stated.over_speed:
-        return bearing_of(row.name, node, own, damping, mirrored=mirrored)
-    stiffness = np.array([W @ np.diag(one.stiffness) @ W.T for one in stated.over_speed])
-    speeds = [one.speed for one in stated.over_speed]
-    return bearing_of(row.name, node, stiffness, damping, speeds, mirrored)
+def _over_speed(
+    name: str, whirl: WhirlData, rollers: RollerTables | None, ratio: float
+) -> tuple[Sequence[float], Floats | None, Floats]:
+    """Speeds of its shaft, stiffness (k, 6, 6) there if not that of its row, and damping (6, 6)."""
+    stated = whirl.of_bearing(name)
+    damping = np.zeros((6, 6)) if stated is None else np.diag(stated.damping)
+    if stated is not None and stated.over_speed:
+        own = np.array([np.diag(one.stiffness) for one in stated.over_speed])
+        return [one.speed for one in stated.over_speed], own, damping
+    if rollers is not None and name in rollers.stiffness:
+        return (ratio * rollers.speeds).tolist(), rollers.stiffness[name], damping
+    return (0.0,), None, damping
 
 
 def _of_end(coupling: Coupling, end: int) -> Floats:

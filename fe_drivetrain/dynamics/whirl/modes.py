@@ -26,6 +26,8 @@ SPEEDS = 48
 """Intervals of speed in which crossings and the loss of stability are looked for."""
 GROWS = 1e-9
 """Negative damping ratio that is no round-off."""
+RINGS = 0.5**0.5
+"""Damping ratio from which a mode has no peak of resonance, and is left out."""
 _HELD = 1e-13  # least eigenvalue of the stiffness of unit diagonal, below which a rotor is loose
 _EXACT = 1e-12  # relative, of speeds
 
@@ -37,14 +39,14 @@ class WhirlModes:
     Attributes
     ----------
     values : Complex
-        Eigenvalues (k,) with a positive imaginary part [1/s].
+        Eigenvalues (k,) with a positive imaginary part, and a damping ratio below `RINGS` [1/s].
     shapes : Complex
         (4 n, k) motions of the first plane before those of the second.
     senses : Floats
         (k,) forward less backward whirl over both, by the mass: 1 forward, -1 backward.
     growth : float
-        Largest negative damping ratio of any motion; 1 of what grows without turning, and below
-        zero where all is damped.
+        Largest negative damping ratio of any motion; 1 of what grows without turning, 0 without
+        damping, and below zero where all is damped.
     """
 
     values: Complex
@@ -118,7 +120,7 @@ def whirl_modes(rotor: Rotor, speed: float, count: int | None = None) -> WhirlMo
     """Modes of a rotor at a speed, with all damping.
 
     Eigenvalues are found as reciprocals, so that the lowest have all digits and motions without
-    mass none.
+    mass none; without damping from a Hermitian matrix, which never fails.
 
     Parameters
     ----------
@@ -136,6 +138,11 @@ def whirl_modes(rotor: Rotor, speed: float, count: int | None = None) -> WhirlMo
     """
     at = equations(rotor, speed)
     _check_held(rotor, at.stiffness)
+    if not is_damped(rotor):
+        values, vectors = _conservative(at.mass, at.rates, at.stiffness)
+        return WhirlModes(
+            values[:count], vectors[:, :count], _senses(rotor, vectors[:, :count]), 0.0
+        )
     if rotor.loss_factor:
         # whirl slower than the shaft, and faster, have different stiffness
         parts = [
@@ -148,9 +155,43 @@ def whirl_modes(rotor: Rotor, speed: float, count: int | None = None) -> WhirlMo
     order = np.argsort(values.imag, kind="stable")
     values, vectors = values[order], vectors[:, order]
     growth = max(float((values.real / np.abs(values)).max(initial=-1.0)), *loose, -1.0)
+    rings = -values.real < RINGS * np.abs(values)
+    values, vectors = values[rings], vectors[:, rings]
     return WhirlModes(
         values[:count], vectors[:, :count], _senses(rotor, vectors[:, :count]), growth
     )
+
+
+def is_damped(rotor: Rotor) -> bool:
+    """Whether anything of a rotor damps."""
+    return bool(
+        rotor.viscous or rotor.loss_factor or any(one.damping.any() for one in rotor.bearings)
+    )
+
+
+def _conservative(M: Floats, G: Floats, K: Floats) -> tuple[Complex, Complex]:
+    """Eigenvalues i w and shapes of M q'' + G q' + K q = 0 with a skew G, by ascending w.
+
+    With K = L L^T, q = L^-T p and v = 1 / w, v^2 p = N p + v H p has the Hermitian matrix
+    [[H, R], [R^T, 0]] of the eigenvalues v, where H = -i L^-1 G L^-T and R R^T = N = L^-1 M L^-T.
+    """
+    size = diagonal_roots(K.diagonal())
+    L = size[:, None] * np.linalg.cholesky((K + K.T) / 2 / np.outer(size, size))
+
+    def within(A: Floats) -> Floats:
+        half = linalg.solve_triangular(L, A, lower=True)
+        return np.asarray(linalg.solve_triangular(L, half.T, lower=True).T)
+
+    masses, basis = np.linalg.eigh(within(M))
+    R = basis * np.sqrt(np.clip(masses, 0.0, None))
+    unit = float(np.sqrt(masses[-1]))
+    H = -1j * within(G)
+    whole = np.block([[H, R], [R.T, np.zeros_like(R)]]) / unit
+    found, vectors = np.linalg.eigh((whole + whole.conj().T) / 2)
+    n = len(M)
+    kept = np.flatnonzero(found > 1e3 * n * np.finfo(float).eps)[::-1]
+    shapes = linalg.solve_triangular(L, vectors[:n, kept], lower=True, trans=1)
+    return np.asarray(1j / (unit * found[kept])), np.asarray(shapes)
 
 
 def _solved(
@@ -165,9 +206,21 @@ def _solved(
     both = np.outer(scale, scale)
     inverse = np.linalg.inv(both * K)
     mass = inverse @ (both * M)
-    unit = float(np.sqrt(np.linalg.norm(mass, 2))) or 1.0
-    A = np.block([[np.zeros((n, n)), np.eye(n)], [-mass / unit**2, -inverse @ (both * D) / unit]])
-    found, vectors = np.linalg.eig(A)
+    size = float(np.sqrt(np.linalg.norm(mass, 2))) or 1.0
+
+    def reciprocal(unit: float) -> tuple[Complex, Complex]:
+        rates = -inverse @ (both * D) / unit
+        found, vectors = np.linalg.eig(
+            np.block([[np.zeros((n, n)), np.eye(n)], [-mass / unit**2, rates]])
+        )
+        return found * unit / size, vectors
+
+    try:
+        found, vectors = reciprocal(size)
+    except np.linalg.LinAlgError:
+        # the solver may go round on a matrix that is nearly a permutation: not with other units
+        found, vectors = reciprocal(1.25 * size)
+    unit = size
     least = 1e3 * n * np.finfo(float).eps
     turning = np.abs(found) > least
     values = 1.0 / (unit * found[turning])
