@@ -80,7 +80,7 @@ def campbell_of(
     traces.append(trace("once a turn", [0.0, top], [0.0, top / 60.0], line=once))
     traces.append(crosses("critical speeds", *zip(*criticals, strict=True)) if criticals else {})
     # once a turn, and the first modes as far as they are not far above it
-    few = float(np.nanmax(found.frequencies[:, :FEW]))
+    few = float(np.nanmax(found.frequencies[:, :FEW], initial=0.0))
     highest = 1.15 * max(top / 60.0, min(few, 4.0 * top / 60.0))
     drawn = chart(
         caption,

@@ -187,17 +187,15 @@ def _check_both_ways(found: Findings, shaft: ShaftWhirl) -> None:
 def _check_power(found: Findings, shaft: ShaftWhirl) -> None:
     """Check that the power of unbalance is what damping takes."""
     response = shaft.response
-    lost = response.absorbed + response.inner
-    # forces do as much work to and fro in a turn as their size times the way
-    whole = np.abs(response.absorbed) + np.abs(response.inner) + np.abs(response.power)
-    scale = float(whole.max())
-    if not shaft.damped or scale == 0.0:
+    if not shaft.damped:
         return
+    apart = response.power - response.absorbed - response.inner
     found.vanishes(
-        f"{shaft.name}: power of unbalance less what bearings and shaft take, over their sum",
-        float(np.abs(response.power - lost).max()) / scale,
-        within=1e-6,
-        why="round-off of the response near a critical speed",
+        f"{shaft.name}: power of unbalance less what bearings and shaft take, largest share of what "
+        "goes to and fro",
+        float(np.abs(apart / response.swinging).max()),
+        within=1e-9,
+        why="round-off of one system of equations at each speed",
         source="balance of power of steady whirl",
         basis="self-consistency",
     )

@@ -352,3 +352,57 @@ def test_ross_has_the_same_critical_speeds_and_frequencies() -> None:
         values = np.linalg.eigvals(np.asarray(theirs.A(speed))).imag
         for mode in modes:
             assert np.abs(values / mode - 1).min() < 2e-3
+
+
+@pytest.mark.needs("exudyn")
+def test_exudyn_precesses_with_these_frequencies() -> None:
+    """A spinning rigid body of Exudyn on two springs: nothing is left of its motion beside both."""
+    import exudyn
+    from exudyn import utilities
+
+    mass, polar, across, k, arm, speed = 5.0, 0.08, 0.05, 2e5, 0.2, 300.0
+    container = exudyn.SystemContainer()
+    system = container.AddSystem()
+    body = system.CreateRigidBody(
+        inertia=utilities.RigidBodyInertia(mass, np.diag([polar, across, across])),
+        initialAngularVelocity=[speed, 0.0, 1e-3],
+    )
+    ground = system.CreateGround()
+    for x in (-arm, arm):
+        system.CreateCartesianSpringDamper(
+            bodyNumbers=[ground, body],
+            localPosition0=[x, 0.0, 0.0],
+            localPosition1=[x, 0.0, 0.0],
+            stiffness=[k, k, k],
+            damping=[0.0, 0.0, 0.0],
+        )
+    sensor = system.AddSensor(
+        utilities.SensorBody(
+            bodyNumber=body,
+            localPosition=[arm, 0.0, 0.0],
+            storeInternal=True,
+            outputVariableType=exudyn.OutputVariableType.Position,
+        )
+    )
+    system.Assemble()
+    settings = exudyn.SimulationSettings()
+    settings.timeIntegration.endTime = 0.5
+    settings.timeIntegration.numberOfSteps = 50000
+    settings.solutionSettings.sensorsWritePeriod = 1e-4
+    settings.solutionSettings.writeSolutionToFile = False
+    settings.timeIntegration.verboseMode = 0
+    system.SolveDynamic(settings)
+    t, _, y, z = system.GetSensorStoredData(sensor).T
+    own = bearing_of("springs", 0, np.diag([0, 2 * k, 2 * k, 0, 2 * k * arm**2, 2 * k * arm**2]))
+    rotor = rotor_of("body", [], [Disc(0, mass, polar, across)], [own])
+    modes = whirl_modes(rotor, speed)
+    tilts = np.argsort(np.abs(modes.frequencies - np.sqrt(2 * k / mass) / (2 * np.pi)))[2:]
+    whirl = y + 1j * z
+    turning = np.sign(modes.senses[tilts]) * modes.values.imag[tilts]
+    basis = np.exp(1j * np.outer(t, turning))
+    left = whirl - basis @ np.linalg.lstsq(basis, whirl, rcond=None)[0]
+    assert np.abs(whirl).max() > 1e-7
+    assert np.abs(left).max() < 2e-3 * np.abs(whirl).max()
+    shifted = np.exp(1j * np.outer(t, 1.01 * turning))
+    worse = whirl - shifted @ np.linalg.lstsq(shifted, whirl, rcond=None)[0]
+    assert np.abs(worse).max() > 10 * np.abs(left).max()

@@ -266,25 +266,23 @@ def whirl_chart(rotor: Rotor, speeds: Sequence[float], count: int) -> WhirlChart
     count : int
         Number of modes, the lowest at the first speed.
     """
-    rest = whirl_modes(rotor, 0.0, count)
+    rest, first = whirl_modes(rotor, 0.0, count), whirl_modes(rotor, speeds[0], count)
+    # strong damping may leave fewer at one of the speeds
+    kept = min(len(rest.values), len(first.values))
     mass = np.kron(np.eye(2), rotor.mass)
-    rows = [(rest.frequencies, rest.decrements, np.full(len(rest.frequencies), np.nan))]
-    shapes: Complex | None = None
+    rows = [(rest.frequencies[:kept], rest.decrements[:kept], np.full(kept, np.nan))]
+    shapes = first.shapes[:, :kept]
     for speed in speeds:
         # more than asked for: one may come from above
         now = whirl_modes(rotor, speed, count + 8)
-        if shapes is None:
-            shapes = now.shapes[:, : len(rest.frequencies)]
         of = likest_shapes(mass, shapes, now.shapes)
         known = of >= 0
-        rows.append(
-            (
-                np.where(known, now.frequencies[of], np.nan),
-                np.where(known, now.decrements[of], np.nan),
-                np.where(known, now.senses[of], np.nan),
-            )
-        )
-        shapes = np.where(known, now.shapes[:, of], shapes)
+        parts = (now.frequencies, now.decrements, now.senses)
+        row = np.full((3, kept), np.nan)
+        row[:, known] = [part[of[known]] for part in parts]
+        rows.append((row[0], row[1], row[2]))
+        shapes = shapes.copy()
+        shapes[:, known] = now.shapes[:, of[known]]
     frequencies, decrements, senses = (np.array(one) for one in zip(*rows, strict=True))
     return WhirlChart(np.array([0.0, *speeds]), frequencies, decrements, senses)
 

@@ -49,6 +49,8 @@ class UnbalanceResponse:
     power, absorbed, inner : Floats
         (s,) mean power of the unbalance, what bearings take of it, and what damping of the turning
         shaft takes; negative where that drives the whirl [W].
+    swinging : Floats
+        (s,) power that goes to and fro between springs and masses, at most [W].
     """
 
     speeds: Floats
@@ -57,6 +59,7 @@ class UnbalanceResponse:
     power: Floats
     absorbed: Floats
     inner: Floats
+    swinging: Floats
 
     __repr__ = short_repr
 
@@ -114,6 +117,7 @@ def unbalance_response(
                 0.5 * np.vdot(rate, force).real,
                 0.5 * np.vdot(rate, supported).real,
                 0.5 * np.vdot(rate, inner).real,
+                0.5 * float(np.abs(rate) @ (np.abs(K) @ np.abs(q))),
             )
         )
     parts = [np.array(one) for one in zip(*rows, strict=True)]
