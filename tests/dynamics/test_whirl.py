@@ -370,7 +370,7 @@ def test_exudyn_precesses_with_these_frequencies() -> None:
     ground = system.CreateGround()
     for x in (-arm, arm):
         system.CreateCartesianSpringDamper(
-            bodyNumbers=[ground, body],
+            itemNumbers=[ground, body],
             localPosition0=[x, 0.0, 0.0],
             localPosition1=[x, 0.0, 0.0],
             stiffness=[k, k, k],
@@ -388,8 +388,8 @@ def test_exudyn_precesses_with_these_frequencies() -> None:
     settings = exudyn.SimulationSettings()
     settings.timeIntegration.endTime = 0.5
     settings.timeIntegration.numberOfSteps = 50000
-    settings.solutionSettings.sensorsWritePeriod = 1e-4
-    settings.solutionSettings.writeSolutionToFile = False
+    settings.solution.sensors.writePeriod = 1e-4
+    settings.solution.file.write = False
     settings.timeIntegration.verboseMode = 0
     system.SolveDynamic(settings)
     t, _, y, z = system.GetSensorStoredData(sensor).T

@@ -1,4 +1,4 @@
-"""Whirl of a drivetrain's shafts: the file's keys, both bounds, the whole drivetrain, the command."""
+"""Whirl of a drivetrain's shafts: keys of its file, bounds, the whole drivetrain, the command."""
 
 import json
 import math
@@ -20,7 +20,7 @@ from fe_drivetrain.dynamics.whirl.modes import critical_speeds
 from fe_drivetrain.dynamics.whirl.rotor import Disc
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.studies.shaft_whirl import WhirlResult, whirl
-from fe_drivetrain.studies.whirl_rollers import centrifugal_rows, roller_tables
+from fe_drivetrain.studies.whirl_rollers import roller_tables
 from fe_drivetrain.studies.whirl_shafts import shaft_rotors
 
 RPM = math.pi / 30.0
@@ -127,7 +127,7 @@ def test_forces_go_with_the_unbalance_or_the_grade() -> None:
         ({"bearings": [{"name": "X"}]}, "whirl: bearing 'X' is none: use one of"),
         (
             {"bearings": [{"name": "HSS-A"}, {"name": "HSS-A"}]},
-            "whirl: bearing 'HSS-A' has two rows",
+            "'HSS-A' has two rows",
         ),
         ({"unbalance": [{"shaft": "X", "moment": 1}]}, "whirl: unbalance is of shaft 'X'"),
         (
@@ -169,7 +169,7 @@ def test_keys_come_back_from_a_file() -> None:
 def test_options_out_of_range_are_refused() -> None:
     with pytest.raises(InputError, match="speeds of the rotor are 2 to 1 rad/s"):
         whirl(read_drivetrain(NAME), speeds=(2.0, 1.0))
-    with pytest.raises(InputError, match="states no operation.rotor_speed"):
+    with pytest.raises(InputError, match=r"states no operation\.rotor_speed"):
         whirl(read_drivetrain("park_2021"))
 
 
@@ -185,7 +185,6 @@ def test_rollers_stiffen_with_the_torque_and_centrifugal_forces_are_small() -> N
     for row in tables.rows:
         assert float(row["centrifugal force of a roller [N]"]) > 0  # type: ignore[arg-type]
         assert float(row["centrifugal force over that load, at most [%]"]) < 1  # type: ignore[arg-type]
-    assert centrifugal_rows.__doc__
 
 
 def test_the_command_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
