@@ -27,6 +27,7 @@ from . import published_campaigns as published_campaigns
 from . import published_drivetrains as published_drivetrains
 from . import published_gears as published_gears
 from . import published_planetary as published_planetary
+from . import published_rotors as published_rotors
 from . import rated_gears as rated_gears
 from . import rigid_ended_shafts as rigid_ended_shafts
 from . import ring_slices as ring_slices

@@ -26,6 +26,7 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     "modes": (
         "nrel_5mw --speeds 6.9:12.1 --open",
         "mine.yaml --level torsional --generator held --json",
+        "mine.yaml --whirl --open",
     ),
     "loads": (
         "'outputs/*.outb' --site class-II --open",

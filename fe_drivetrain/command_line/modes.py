@@ -24,6 +24,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
 
 if TYPE_CHECKING:
+    from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
     from fe_drivetrain.procedure import Excitation
     from fe_drivetrain.report.suite.run import Run
     from fe_drivetrain.studies.drivetrain_modes import ModesResult
@@ -93,6 +94,14 @@ class ModesRequest:
             help="Error of a frequency that a simpler level may have, as in 5% or 0.05.",
         ),
     ] = "5%"
+    whirl: Annotated[
+        bool,
+        typer.Option(
+            "--whirl",
+            help="Whirl of each shaft instead: critical speeds, Campbell diagrams of forward and "
+            "backward whirl, unbalance, stability.",
+        ),
+    ] = False
     condensed: Condensed = False
     matrices: Matrices = False
     out: Annotated[
@@ -112,6 +121,9 @@ def modes_command(context: typer.Context, asked: ModesRequest) -> int:
     planets, teeth with sidebands, shafts), mode shapes that move, energy by part, a resonance
     register with margins, and what each level of the model gives.
 
+    With --whirl, each shaft is a rotor by itself on its bearings, which may change with the speed:
+    the file's key whirl has that, damping and unbalance.
+
     The exit status is 0 if the modes were found, 2 if the file or an option is wrong.
     """
     hold_threads()
@@ -124,6 +136,8 @@ def modes_command(context: typer.Context, asked: ModesRequest) -> int:
     from fe_drivetrain.studies.drivetrain_modes import modes
 
     drivetrain = read_drivetrain(asked.drivetrain, parse_settings(asked.set_ or ()))
+    if asked.whirl:
+        return _whirl(asked, drivetrain, speeds)
 
     def study(run: Run) -> ModesResult:
         return modes(
@@ -142,6 +156,31 @@ def modes_command(context: typer.Context, asked: ModesRequest) -> int:
 
     title = f"{drivetrain.title}: natural frequencies, and what excites them"
     return run_on_scene("modes", [asked.drivetrain], title, asked.out, Shown(study, show_modes))
+
+
+def _whirl(asked: ModesRequest, drivetrain: Drivetrain, speeds: tuple[float, float] | None) -> int:
+    """Whirl of the shafts."""
+    _refuse_beside_whirl(asked)
+    from fe_drivetrain.pages.whirl import show_whirl
+    from fe_drivetrain.studies.shaft_whirl import WhirlResult, whirl
+
+    def study(run: Run) -> WhirlResult:
+        return whirl(drivetrain, speeds=speeds, matrices=asked.matrices, report=run.report)
+
+    title = f"{drivetrain.title}: whirl of its shafts"
+    return run_on_scene("whirl", [asked.drivetrain], title, asked.out, Shown(study, show_whirl))
+
+
+def _refuse_beside_whirl(asked: ModesRequest) -> None:
+    """Refuse options that whirl does not take."""
+    default = ModesRequest("")
+    names = ("level", "generator", "speed", "blades", "excite", "tolerance", "condensed")
+    given = [name for name in names if getattr(asked, name) != getattr(default, name)]
+    if given:
+        raise InputError(
+            f"--{given[0]} is of modes of the whole drivetrain and has no meaning beside --whirl: "
+            "leave one of them out"
+        )
 
 
 def parse_speeds(text: str) -> tuple[float, float]:

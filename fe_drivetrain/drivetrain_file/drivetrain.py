@@ -21,6 +21,7 @@ from fe_drivetrain.drivetrain_file.turning_parts import (
     Seal,
     ShaftRow,
 )
+from fe_drivetrain.drivetrain_file.whirl_data import WhirlData
 from fe_drivetrain.geometry.part import in_its_field, rows_of
 
 
@@ -60,6 +61,9 @@ class Drivetrain(Keys):
     operation: Operation | None = Field(default=None, description="operating range")
     damping: DampingRatios | None = Field(default=None, description="damping of shafts and meshes")
     limits: Limits | None = Field(default=None, description="limits of torques")
+    whirl: WhirlData | None = Field(
+        default=None, description="unbalance and damping of shafts, bearings over the speed"
+    )
 
     @property
     def states_gears(self) -> bool:
@@ -72,5 +76,5 @@ class Drivetrain(Keys):
         return None if self.limits is None else self.limits.peak_torque.get(shaft)
 
     _bodies = field_validator(
-        "rotor", "generator", "brake", "operation", "damping", "limits", mode="wrap"
+        "rotor", "generator", "brake", "operation", "damping", "limits", "whirl", mode="wrap"
     )(in_its_field)

@@ -55,6 +55,7 @@ _SILENT = frozenset(
         *("nose", "stands_on", "source", "smallest_detail", "fillet", "inner_diameter", "held"),
         # what turns beside the main shaft: studies of it state their assumptions themselves
         *("sources", "assumed", "rotor", "brake", "generator", "operation", "damping", "limits"),
+        "whirl",
         *("stages", "shafts", "bearings", "strength"),
     }
 )

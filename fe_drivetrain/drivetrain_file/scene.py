@@ -160,7 +160,7 @@ class Scene(Drivetrain):
             self.strength.check_fits(self.shaft)
         check_spreads(self, self.uncertainty)
         check_temperatures(self)
-        if self.states_gears or self.limits:
+        if self.states_gears or self.limits or self.whirl:
             check_turning(self, main_shaft(self), main_bearings(self))
         return self
 

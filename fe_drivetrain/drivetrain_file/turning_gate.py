@@ -14,6 +14,7 @@ from fe_drivetrain.drivetrain_file.machine_gate import check_table
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.stage_completion import NotGivenError, completed
 from fe_drivetrain.drivetrain_file.turning_parts import BearingData, ShaftData, ShaftRow
+from fe_drivetrain.drivetrain_file.whirl_data import check_whirl
 
 #: Rated power over torque times speed of the generator: losses of either side, as shares.
 LEAST_POWER, MOST_POWER = 0.75, 1.15
@@ -119,6 +120,7 @@ def check_turning(
     except NotGivenError:
         return
     check_table(table)
+    check_whirl(drivetrain.whirl, table)
     _check_torque(drivetrain, abs(table.speeds[-1]))
     _check_limits(drivetrain, table)
 

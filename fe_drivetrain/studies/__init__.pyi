@@ -44,6 +44,8 @@ from .seat_stiffness import SeatStiffness as SeatStiffness
 from .seat_stiffness import seat_stiffness as seat_stiffness
 from .shaft_strength import StrengthResult as StrengthResult
 from .shaft_strength import strength as strength
+from .shaft_whirl import WhirlResult as WhirlResult
+from .shaft_whirl import whirl as whirl
 from .solved_assembly import Assembly as Assembly
 from .solved_assembly import solved_assembly as solved_assembly
 from .strength_options import StrengthOptions as StrengthOptions
@@ -53,3 +55,7 @@ from .transient_parts import DamageOptions as DamageOptions
 from .transient_result import TransientResult as TransientResult
 from .turning_advice import TurningAdvice as TurningAdvice
 from .turning_advice import advise_turning as advise_turning
+from .whirl_charts import campbell_of as campbell_of
+from .whirl_record import ShaftWhirl as ShaftWhirl
+from .whirl_shafts import ShaftRotor as ShaftRotor
+from .whirl_shafts import shaft_rotors as shaft_rotors

@@ -248,10 +248,26 @@ def likest_modes(system: System, shapes: Floats | Complex, turning: TurningModes
     ndarray, (k,)
         -1 where there is no mode left.
     """
-    sizes = [
-        np.einsum("ij,ij->j", of.conj(), system.mass @ of).real for of in (shapes, turning.shapes)
-    ]
-    likeness = np.abs(shapes.conj().T @ (system.mass @ turning.shapes)) ** 2 / np.outer(*sizes)
+    return likest_shapes(system.mass, shapes, turning.shapes)
+
+
+def likest_shapes(mass: Floats, shapes: Floats | Complex, others: Floats | Complex) -> Ints:
+    """For each shape the number of the other one that is most like it; see `likest_modes`.
+
+    Parameters
+    ----------
+    mass : ndarray, (n, n)
+        Mass, by which likeness is measured.
+    shapes, others : ndarray, (n, k) and (n, m)
+        Shapes, each by ascending frequency.
+
+    Returns
+    -------
+    ndarray, (k,)
+        -1 where there is none left.
+    """
+    sizes = [np.einsum("ij,ij->j", of.conj(), mass @ of).real for of in (shapes, others)]
+    likeness = np.abs(shapes.conj().T @ (mass @ others)) ** 2 / np.outer(*sizes)
     found = np.full(shapes.shape[1], -1)
     rows, columns = linear_sum_assignment(likeness, maximize=True)
     found[rows] = columns
