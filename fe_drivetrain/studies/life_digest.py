@@ -166,6 +166,7 @@ def content(
         "file": history_digest(file),
         "bearing": one.name,
         "rated": repr(one.rated),
+        "page": repr(one.entry.page),
         "rollers": {name: repr(b) for name, b in one.path.bearings.items()},
         "rules": repr(one.rules(rules)),
         "reactions": [path.key for path in reactions_of(one)],
