@@ -224,3 +224,20 @@ def test_stiffness_and_life_follow_from_the_member_alone() -> None:
     one, other = (rated_entry(fitted_entry(page, k, fit), "mine") for k in (0, 1))
     assert one.bearing != other.bearing
     assert replace(one, bearing=other.bearing) == other
+
+
+def test_a_known_inside_keeps_its_rollers_and_takes_the_factors_of_its_page(
+    tmp_path: Path,
+) -> None:
+    data = yaml.safe_load(starting_bearings())["known_inside"]
+    del data["ratings"], data["sources"]["ratings"]
+    data["page"] = {"designation": "NJ 2232", "C": 9.3e5, "C0": 1.2e6}
+    path = tmp_path / "bearings.yaml"
+    path.write_text(yaml.safe_dump({"mine": data}), "utf-8")
+    entry = read_bearing_catalogue(path)["mine"]
+    rated = rated_entry(entry, "mine")
+    assert not entry.fitted
+    assert entry.elements == 16
+    assert (rated.dynamic, rated.static) == (9.3e5, 1.2e6)
+    assert rated.pitch_diameter == pytest.approx(0.225)
+    assert fitted_entry(page_of(CYLINDRICAL)).fitted

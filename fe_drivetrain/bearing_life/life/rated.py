@@ -331,11 +331,11 @@ def rated_entry(entry: Entry, name: str) -> RatedBearing:
     InputError
         The rows differ from each other, or are beyond the tables of the standards.
     """
-    printed = entry.ratings.model_dump() if entry.ratings else {}
-    ratings_of = (printed.get("C"), printed.get("C0"), printed.get("Cu"))
+    printed = entry.ratings or entry.page
+    ratings_of = (None, None, None) if printed is None else (printed.C, printed.C0, printed.Cu)
     b_m = B_M.get(entry.kind, 1.1)
     rated = rated_bearing(entry.bearing(name), *ratings_of, b_m=b_m)
-    source = entry.sources.get("ratings", "given")
+    source = entry.sources.get("ratings", entry.page.source if entry.page else "given")
     words = [source if text == "given" else text for text in rated.sources]
     found = replace(
         rated, sources=(words[0], words[1], words[2]), limiting_speed_rpm=entry.limiting_speed_rpm
