@@ -201,6 +201,9 @@ class Entry(BaseModel):
             return Bearing(name, (tapered_row(*body, angle, **more),))
         if self.kind == "spherical_roller":
             return spherical_roller(name, *body, angle, **more)
+        if self.kind == "cylindrical" and self.page is not None and self.page.row_count == 2:
+            apart = 0.25 * self.page.sizes.width
+            return cylindrical(name, *body, places=(-apart, apart), **more)
         make = cylindrical if self.kind == "cylindrical" else toroidal
         return make(name, *body, **more)
 

@@ -85,7 +85,8 @@ def _years(found: Findings, life: BearingLife, site: Site | None) -> KeyFigure:
     quantity, value = f"L10mr of bearing {life.name}", life.years["L10mr"]
     name, band = f"{quantity} [years]", scatter(life)
     if life.inside is not None:
-        band = float(np.hypot(band or 0.0, beyond(value, life.inside.years["L10mr"]))) or None
+        wide = float(np.hypot(band or 0.0, beyond(value, life.inside.years["L10mr"])))
+        band = wide if 0.0 < wide < value else band  # a wider one is in a caution, with its ends
     if site is None:
         return found.value(name, value, band)
     one = found.value(name, value, band, at_least=site.years, by="design life")

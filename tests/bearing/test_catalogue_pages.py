@@ -43,6 +43,7 @@ TAPERED: dict[str, Any] = {
     "Y": 1.4,
     "Y0": 0.8,
 }
+TWO_ROWS: dict[str, Any] = {"designation": "NN 3030", "C": 3.35e5, "C0": 5.85e5}
 BALLS: dict[str, Any] = {"designation": "6309", "C": 5.53e4, "C0": 3.15e4, "f0": 13}
 
 
@@ -120,10 +121,12 @@ def test_a_size_that_no_table_has_asks_for_what_is_missing_alone() -> None:
     assert tuple(own.sizes) == (0.615, 0.88, 0.275)
 
 
-@pytest.mark.parametrize("data", [SPHERICAL, CYLINDRICAL, TAPERED])
+@pytest.mark.parametrize("data", [SPHERICAL, CYLINDRICAL, TAPERED, TWO_ROWS])
 def test_insides_have_the_static_rating_and_angle_of_the_page(data: dict[str, Any]) -> None:
     page = page_of(data)
     fit = fitted_rollers(page, 16)
+    rows = fitted_entry(page, 0, fit).bearing("mine").rows
+    assert len(rows) == (2 if data in (SPHERICAL, TWO_ROWS) else 1)
     b_m = 1.15 if page.of_kind == "spherical_roller" else 1.1
     for k in range(len(fit)):
         found = ratings(fitted_entry(page, k, fit).bearing("mine"), b_m)

@@ -370,7 +370,7 @@ def page_factors(page: CataloguePage) -> Factors | None:
     if page.of_kind == "ball" or page.angle is None:
         return None
     e = page.e if page.e is not None else 1.5 * tan(radians(page.angle))
-    if page.rows == 1:
+    if page.row_count == 1:
         Y, Y0 = page.Y or 0.6 / e, page.Y0 or 0.33 / e
         return Factors(e, (1.0, 0.0), (0.4, Y), (0.5, Y0))
     Y1, Y2, Y0 = page.Y1 or 0.675 / e, page.Y2 or 1.005 / e, page.Y0 or 0.66 / e
