@@ -72,7 +72,7 @@ def _published(
     elif length is None:
         cosine = cos(radians(angle))
         gamma = diameter * cosine / pitch
-        length = C0 / (44.0 * (1.0 - gamma) * page.rows * number * diameter * cosine)
+        length = C0 / (44.0 * (1.0 - gamma) * page.row_count * number * diameter * cosine)
     sizes = 1e-3 * diameter, 1e-3 * pitch, 1e-3 * length
     return Published(name, page, number, *sizes, angle, source)
 

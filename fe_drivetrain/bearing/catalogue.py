@@ -58,6 +58,10 @@ _NEEDS = {
 }
 
 
+FITTED = "assumed: one of the insides that fit the page"
+"""Source of an inside that nobody states."""
+
+
 class Printed(BaseModel):
     """Ratings as a catalogue prints them [N]."""
 
@@ -102,7 +106,7 @@ class Entry(BaseModel):
         default=(0.52, 0.53), description="radii of the grooves over the diameter of balls [-]"
     )
     page: CataloguePage | None = Field(
-        default=None, description="the catalogue's page that the inside is fitted to"
+        default=None, description="what the catalogue's page prints beside: D, B, e, Y and so on"
     )
     sources: dict[str, str] = Field(description="where each number comes from, or assumed: why")
 
@@ -142,6 +146,11 @@ class Entry(BaseModel):
     def assumed(self) -> list[str]:
         """The numbers that no source gives."""
         return [name for name, text in self.sources.items() if text.startswith("assumed")]
+
+    @property
+    def fitted(self) -> bool:
+        """Whether its inside is one of those that fit its page, and not known."""
+        return self.page is not None and self.sources["elements"] == FITTED
 
     def bearing(self, name: str) -> Bearing:
         """The bearing.
@@ -198,6 +207,9 @@ class Entry(BaseModel):
             return Bearing(name, (tapered_row(*body, angle, **more),))
         if self.kind == "spherical_roller":
             return spherical_roller(name, *body, angle, **more)
+        if self.kind == "cylindrical" and self.page is not None and self.page.row_count == 2:
+            apart = 0.25 * self.page.sizes.width
+            return cylindrical(name, *body, places=(-apart, apart), **more)
         make = cylindrical if self.kind == "cylindrical" else toroidal
         return make(name, *body, **more)
 
@@ -360,7 +372,6 @@ def fitted_entry(
     """
     found = fitted_rollers(page, MEMBERS) if fitted is None else fitted
     inside = found.fields(found.middle if member is None else member)
-    words = f"assumed: one of {len(found)} insides that fit the page"
     data: dict[str, Any] = {
         "title": f"{page.designation}, by its catalogue's page",
         "kind": page.of_kind,
@@ -368,7 +379,7 @@ def fitted_entry(
         "ratings": {"C": page.C, "C0": page.C0, "Cu": page.Cu},
         "page": page,
         **inside,
-        "sources": {key: words for key in inside if key in _SOURCED}
+        "sources": {key: FITTED for key in inside if key in _SOURCED}
         | {"bore": "the page", "ratings": page.source},
     }
     if page.of_kind == "ball":

@@ -83,6 +83,9 @@ class CataloguePage(BaseModel):
     arrangement: Literal["X", "O"] | None = Field(
         default=None, description="of two tapered rows: X face to face, O back to back"
     )
+    rows: int | None = Field(
+        default=None, ge=1, le=2, description="rows of a cylindrical bearing; by the designation"
+    )
     d: float | None = _length("bore; by the designation where left out")
     D: float | None = _length("outside diameter; by the designation where left out")
     B: float | None = _length("width; by the designation where left out")
@@ -173,10 +176,12 @@ class CataloguePage(BaseModel):
         return _sizes(self)
 
     @property
-    def rows(self) -> int:
+    def row_count(self) -> int:
         """Rows of rolling elements."""
         if self.of_kind in ("spherical_roller", "double_row_tapered"):
             return 2
+        if self.rows is not None:
+            return self.rows
         return self.read_as.rows if self.read_as else 1
 
     @property
@@ -302,7 +307,7 @@ def _wrong_ratings(page: CataloguePage) -> Iterator[str]:
 def _wrong_factors(page: CataloguePage) -> Iterator[str]:
     if page.e is None or page.of_kind == "ball":
         return
-    two = page.rows == 2
+    two = page.row_count == 2
     pairs = (("Y", page.Y, _SINGLE), ("Y1", page.Y1, _DOUBLE[0]), ("Y2", page.Y2, _DOUBLE[1]))
     for key, Y, product in pairs:
         if Y is None or (key == "Y") == two:
@@ -315,7 +320,7 @@ def _wrong_factors(page: CataloguePage) -> Iterator[str]:
 
 
 def _wrong_kind(page: CataloguePage) -> Iterator[str]:
-    kind, two = page.of_kind, page.rows == 2
+    kind, two = page.of_kind, page.row_count == 2
     if (page.arrangement is not None) != (kind == "double_row_tapered"):
         yield (
             "arrangement is given: leave it out, or make kind double_row_tapered"
@@ -335,6 +340,8 @@ def _wrong_kind(page: CataloguePage) -> Iterator[str]:
             )
     if (page.F is not None or page.E is not None) and kind != "cylindrical":
         yield f"F and E are those of cylindrical bearings, not of kind {kind}: leave them out"
+    if page.rows is not None and kind != "cylindrical":
+        yield f"rows are those of cylindrical bearings, not of kind {kind}: leave them out"
     if page.f0 is not None and kind != "ball":
         yield f"f0 is that of ball bearings, not of kind {kind}: leave it out"
     if page.element_length is not None and kind == "ball":

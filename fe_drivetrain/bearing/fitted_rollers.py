@@ -257,7 +257,7 @@ def _box(page: CataloguePage) -> Box:
         box = box._replace(fill=FULL_COMPLEMENT)
     if page.of_kind == "ball" and page.angle != 0.0:
         box = box._replace(fill=ANGULAR_FILL)
-    if page.rows == 2 and page.of_kind == "cylindrical":
+    if page.row_count == 2 and page.of_kind == "cylindrical":
         box = box._replace(length=(0.5 * box.length[0], 0.5 * box.length[1]))
     return box
 
@@ -298,7 +298,7 @@ def _pitch_and_diameter(
 
 def _rollers(page: CataloguePage, box: Box, points: Floats) -> _Drawn:
     angle = _angles(page, box, points[:, 3])
-    cosine, i = np.cos(angle), page.rows
+    cosine, i = np.cos(angle), page.row_count
     pitch, diameter = _pitch_and_diameter(page, box, points, cosine)
     gamma = diameter * cosine / pitch
     number = np.rint(_between(box.fill, points[:, 2]) * np.pi * pitch / diameter)
@@ -402,7 +402,7 @@ def _dynamic(
     cosine: Floats,
 ) -> Floats:
     """C of ISO 281 of rollers [N]."""
-    lengths = (page.rows * 1e3 * length * cosine) ** (7.0 / 9.0)
+    lengths = (page.row_count * 1e3 * length * cosine) ** (7.0 / 9.0)
     sizes = number**0.75 * (1e3 * diameter) ** (29.0 / 27.0)
     return np.asarray(B_M.get(page.of_kind, 1.1) * capacity_factors(gamma) * lengths * sizes)
 

@@ -10,6 +10,7 @@ from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.life_assumptions import in_years
+from fe_drivetrain.studies.life_inside import beyond
 from fe_drivetrain.studies.life_sums import BearingLife, scatter
 from fe_drivetrain.studies.shown_units import bearing_in_words
 from fe_drivetrain.turbine_loads.histories.sites import Site
@@ -83,6 +84,9 @@ def _years(found: Findings, life: BearingLife, site: Site | None) -> KeyFigure:
     """The life of a bearing, against the design life where a site states one."""
     quantity, value = f"L10mr of bearing {life.name}", life.years["L10mr"]
     name, band = f"{quantity} [years]", scatter(life)
+    if life.inside is not None:
+        wide = float(np.hypot(band or 0.0, beyond(value, life.inside.years["L10mr"])))
+        band = wide if 0.0 < wide < value else band  # a wider one is in a caution, with its ends
     if site is None:
         return found.value(name, value, band)
     one = found.value(name, value, band, at_least=site.years, by="design life")
@@ -91,9 +95,11 @@ def _years(found: Findings, life: BearingLife, site: Site | None) -> KeyFigure:
 
 
 def _pressure(found: Findings, life: BearingLife) -> KeyFigure:
+    pressure, inside = life.limits.max_pressure, life.inside
     return found.value(
         f"peak contact pressure in {life.name} [MPa]",
-        1e-6 * life.limits.max_pressure,
+        1e-6 * pressure,
+        None if inside is None else 1e-6 * beyond(pressure, inside.pressure) or None,
         at_most=1e-6 * life.bearing.rated.static_pressure,
         by=_STANDARD,
     )

@@ -167,6 +167,7 @@ def content(
         "bearing": one.name,
         "rated": repr(one.rated),
         "clearance": None if one.clearance is None else repr(one.clearance.radial),
+        "page": repr(one.entry.page),
         "rollers": {name: repr(b) for name, b in one.path.bearings.items()},
         "rules": repr(one.rules(rules)),
         "reactions": [path.key for path in reactions_of(one)],

@@ -69,7 +69,7 @@ def insides_of(one: OneBearing, profiled: bool) -> list[Bearing]:
     profiled : bool
         Whether rollers have a profile, that of the standard times each member's factor.
     """
-    if one.entry.page is None:
+    if one.entry.page is None or not one.entry.fitted:
         return []
     fitted = fitted_rollers(one.entry.page, INSIDES)
     return [inside_of(one, fitted, k, profiled) for k in range(len(fitted))]
@@ -202,6 +202,20 @@ def inside_band(
         _ends(fitted.rated),
         _ends(fitted.limited),
     )
+
+
+def beyond(value: float, ends: tuple[float, float]) -> float:
+    """How far the farther end of a band is from a value; 0 of a band or value without end.
+
+    Parameters
+    ----------
+    value : float
+        With the inside that is taken.
+    ends : tuple of float
+        Least and largest over all insides.
+    """
+    far = max(value - ends[0], ends[1] - value)
+    return far if np.isfinite(far) else 0.0
 
 
 def _ends(values: Floats) -> tuple[float, float]:

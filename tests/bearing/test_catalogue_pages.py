@@ -43,6 +43,7 @@ TAPERED: dict[str, Any] = {
     "Y": 1.4,
     "Y0": 0.8,
 }
+TWO_ROWS: dict[str, Any] = {"designation": "NN 3030", "C": 3.35e5, "C0": 5.85e5}
 BALLS: dict[str, Any] = {"designation": "6309", "C": 5.53e4, "C0": 3.15e4, "f0": 13}
 
 
@@ -120,10 +121,12 @@ def test_a_size_that_no_table_has_asks_for_what_is_missing_alone() -> None:
     assert tuple(own.sizes) == (0.615, 0.88, 0.275)
 
 
-@pytest.mark.parametrize("data", [SPHERICAL, CYLINDRICAL, TAPERED])
+@pytest.mark.parametrize("data", [SPHERICAL, CYLINDRICAL, TAPERED, TWO_ROWS])
 def test_insides_have_the_static_rating_and_angle_of_the_page(data: dict[str, Any]) -> None:
     page = page_of(data)
     fit = fitted_rollers(page, 16)
+    rows = fitted_entry(page, 0, fit).bearing("mine").rows
+    assert len(rows) == (2 if data in (SPHERICAL, TWO_ROWS) else 1)
     b_m = 1.15 if page.of_kind == "spherical_roller" else 1.1
     for k in range(len(fit)):
         found = ratings(fitted_entry(page, k, fit).bearing("mine"), b_m)
@@ -224,3 +227,20 @@ def test_stiffness_and_life_follow_from_the_member_alone() -> None:
     one, other = (rated_entry(fitted_entry(page, k, fit), "mine") for k in (0, 1))
     assert one.bearing != other.bearing
     assert replace(one, bearing=other.bearing) == other
+
+
+def test_a_known_inside_keeps_its_rollers_and_takes_the_factors_of_its_page(
+    tmp_path: Path,
+) -> None:
+    data = yaml.safe_load(starting_bearings())["known_inside"]
+    del data["ratings"], data["sources"]["ratings"]
+    data["page"] = {"designation": "NJ 2232", "C": 9.3e5, "C0": 1.2e6}
+    path = tmp_path / "bearings.yaml"
+    path.write_text(yaml.safe_dump({"mine": data}), "utf-8")
+    entry = read_bearing_catalogue(path)["mine"]
+    rated = rated_entry(entry, "mine")
+    assert not entry.fitted
+    assert entry.elements == 16
+    assert (rated.dynamic, rated.static) == (9.3e5, 1.2e6)
+    assert rated.pitch_diameter == pytest.approx(0.225)
+    assert fitted_entry(page_of(CYLINDRICAL)).fitted

@@ -129,6 +129,7 @@ def test_json_of_a_study_is_that_of_its_result(invoke: Invoke, tmp_path: Path) -
         (("list", "tiny"), [{"name", "title", "source"}]),
         (("new", "--list"), {"three-point", "two-bearings"}),
         (("new", "mine.yaml"), {"file", "title"}),
+        (("new", "bearings.yaml", "--bearing"), {"file", "title"}),
         (("export", "--list"), [{"format", "ending", "holds", "read by", "needs"}]),
     ],
 )

@@ -331,11 +331,11 @@ def rated_entry(entry: Entry, name: str) -> RatedBearing:
     InputError
         The rows differ from each other, or are beyond the tables of the standards.
     """
-    printed = entry.ratings.model_dump() if entry.ratings else {}
-    ratings_of = (printed.get("C"), printed.get("C0"), printed.get("Cu"))
+    printed = entry.ratings or entry.page
+    ratings_of = (None, None, None) if printed is None else (printed.C, printed.C0, printed.Cu)
     b_m = B_M.get(entry.kind, 1.1)
     rated = rated_bearing(entry.bearing(name), *ratings_of, b_m=b_m)
-    source = entry.sources.get("ratings", "given")
+    source = entry.sources.get("ratings", entry.page.source if entry.page else "given")
     words = [source if text == "given" else text for text in rated.sources]
     found = replace(
         rated, sources=(words[0], words[1], words[2]), limiting_speed_rpm=entry.limiting_speed_rpm
@@ -370,7 +370,7 @@ def page_factors(page: CataloguePage) -> Factors | None:
     if page.of_kind == "ball" or page.angle is None:
         return None
     e = page.e if page.e is not None else 1.5 * tan(radians(page.angle))
-    if page.rows == 1:
+    if page.row_count == 1:
         Y, Y0 = page.Y or 0.6 / e, page.Y0 or 0.33 / e
         return Factors(e, (1.0, 0.0), (0.4, Y), (0.5, Y0))
     Y1, Y2, Y0 = page.Y1 or 0.675 / e, page.Y2 or 1.005 / e, page.Y0 or 0.66 / e
