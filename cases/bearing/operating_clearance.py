@@ -150,9 +150,10 @@ def ladder(quick: bool) -> list[Rung]:
 
 def printed_fits(page: Page) -> float:
     """Hold interferences against printed ones; the largest difference of probable ones [µm]."""
-    fits = [(name, d, shaft_limits(name, d), bore_limits(d), *of) for name, d, *of in SHAFTS]
-    fits += [(n, d, outside_limits(d), housing_limits(n, d), *of) for n, d, *of in HOUSINGS]
-    found = [_row(*one) for one in fits]
+    found = [
+        *(_row(n, d, shaft_limits(n, d), bore_limits(d), t, p) for n, d, t, p in SHAFTS),
+        *(_row(n, d, outside_limits(d), housing_limits(n, d), t, p) for n, d, t, p in HOUSINGS),
+    ]
     page.vanishes(
         "interference of fits with tolerances at their limits, largest difference [µm]",
         max(limits for _, limits, _ in found),

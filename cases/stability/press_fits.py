@@ -9,7 +9,6 @@ from fe_drivetrain.bearing.operating_clearance import FitState, Seats, Warm, fit
 from fe_drivetrain.bearing.press_fits import Ring, RingMaterial, fit_pressure
 from fe_drivetrain.cases import case
 from fe_drivetrain.comparison import last_within
-from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 
 STEEL = RingMaterial(206e9, 0.3, 7850.0, 12e-6)
@@ -135,7 +134,7 @@ def run(run: Run, page: Page) -> None:
         least, step = loose_seats(page, run.quick)
     page.answer(
         "Where does the pressure of a press fit fail to be computed?",
-        f"Nowhere in bearings: rings down to walls of {formatted(thinnest, 1)} of the radius keep "
+        f"Nowhere in bearings: rings down to walls of {thinnest:.0e} of the radius keep "
         "six digits, and loose rings have no pressure.",
         [
             page.value("thinnest wall over radius with six digits of pressure", thinnest),

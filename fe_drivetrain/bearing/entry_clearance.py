@@ -125,9 +125,8 @@ def entry_clearance(
     """
     seats, assumed = entry_seats(entry, mounting, shaft, housing, rings)
     if mounting.clearance_class is not None:
-        kind = "ball" if entry.kind == "ball" and not entry.contact_angle else entry.kind
-        if entry.kind == "ball" and entry.contact_angle:
-            kind = "angular contact ball"
+        angular = entry.kind == "ball" and entry.contact_angle
+        kind = "angular contact ball" if angular else entry.kind
         initial = class_clearance(kind, mounting.clearance_class, seats.bore)
     elif mounting.preload is not None:
         low, high = (_approach(entry, force) for force in mounting.preload)

@@ -192,15 +192,15 @@ def warm_of(given: Temperatures | None, speed: float = 0.0) -> Warm:
     """
     if given is None:
         return Warm(speed=speed)
-    inner, outer = given.inner_ring, given.outer_ring
-    each = (
-        inner if given.shaft is None else given.shaft,
-        inner,
-        0.5 * (inner + outer) if given.rollers is None else given.rollers,
-        outer,
-        outer if given.housing is None else given.housing,
+    inner, outer, cold = given.inner_ring, given.outer_ring, given.mounting
+    return Warm(
+        shaft=(inner if given.shaft is None else given.shaft) - cold,
+        inner_ring=inner - cold,
+        rollers=(0.5 * (inner + outer) if given.rollers is None else given.rollers) - cold,
+        outer_ring=outer - cold,
+        housing=(outer if given.housing is None else given.housing) - cold,
+        speed=speed,
     )
-    return Warm(*(one - given.mounting for one in each), speed)
 
 
 def fitted_clearance(

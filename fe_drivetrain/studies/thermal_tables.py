@@ -40,6 +40,11 @@ def thermal_tables(scene: Scene, model: Model | None = None) -> dict[str, list[R
     return {CAPTION: [row for level, state in found.items() for row in _rows(scene, level, state)]}
 
 
+def _without_round_off(value: float) -> float:
+    """A value of kN or kN m, to a thousandth of a N or N m."""
+    return round(float(value), 6)
+
+
 def _rows(scene: Scene, level: str, state: ThermalState) -> list[Record]:
     rows: list[Record] = []
     for name in (*scene.bearing_names, "gearbox"):
@@ -50,9 +55,9 @@ def _rows(scene: Scene, level: str, state: ThermalState) -> list[Record]:
             {
                 "level": level,
                 "at": name,
-                "Fx [kN]": 1e-3 * float(force[0]),
-                "Fz [kN]": 1e-3 * float(force[2]),
-                "My [kN m]": 1e-3 * float(force[4]),
+                "Fx [kN]": _without_round_off(1e-3 * force[0]),
+                "Fz [kN]": _without_round_off(1e-3 * force[2]),
+                "My [kN m]": _without_round_off(1e-3 * force[4]),
                 "moves along x [mm]": 1e3 * float(moved[0]),
                 "moves along z [mm]": 1e3 * float(moved[2]),
                 "radial growth of the seat [µm]": None if growth is None else 1e6 * growth,
