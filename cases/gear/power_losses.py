@@ -6,6 +6,7 @@ from math import pi, radians
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.common.progress import silent
 from fe_drivetrain.comparison import as_printed
 from fe_drivetrain.gear import Gear, Pair
 from fe_drivetrain.gear.losses import film_friction, mean_friction, tooth_loss_factor
@@ -132,7 +133,7 @@ def losses_of(chosen: ChosenDrivetrain) -> DrivetrainLosses:
     train, meshes, left_out = prepared(chosen.drivetrain, torque, options, loading)
     spectrum = [(share * train.torque, 1.0) for share in SHARES]
     asked = GearLoading((), None, None, spectrum, False)
-    given = loads_of(train, options, asked, lambda _: None)
+    given = loads_of(train, options, asked, silent)
     return drivetrain_losses(chosen.drivetrain, train, meshes, left_out, given)
 
 

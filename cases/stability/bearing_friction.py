@@ -89,7 +89,7 @@ def run(run: Run, page: Page) -> None:
 
 def film_bound(diameter: float) -> float:
     """nu n from which boundary friction has less than its share, by the closed form of phi_bl."""
-    return (log(1.0 / CARRIED) / (2.6e-8 * diameter)) ** (1.0 / 1.4)
+    return float((log(1.0 / CARRIED) / (2.6e-8 * diameter)) ** (1.0 / 1.4))
 
 
 def fed_bound(rolling: Floats, product: Floats) -> float:

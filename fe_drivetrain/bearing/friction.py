@@ -212,11 +212,11 @@ def equivalent_friction_load(
     Fr, Fa = np.broadcast_arrays(np.abs(radial), np.abs(axial))
     if bearing.kind == "ball":
         own = Fa if bearing.contact_angle > 0.0 else 3.3 * Fa
-        return np.maximum(own - 0.1 * Fr, Fr)
+        return np.asarray(np.maximum(own - 0.1 * Fr, Fr))
     if bearing.kind == "single_row_tapered":
-        return np.maximum(2.0 * bearing.axial_factor * Fa, Fr)
+        return np.asarray(np.maximum(2.0 * bearing.axial_factor * Fa, Fr))
     if bearing.kind == "double_row_tapered":
-        return np.maximum(1.21 * bearing.axial_factor * Fa, Fr)
+        return np.asarray(np.maximum(1.21 * bearing.axial_factor * Fa, Fr))
     if bearing.kind == "spherical_roller":
         e = bearing.axial_ratio
         share = np.minimum(Fa / np.maximum(e * Fr, np.finfo(float).tiny), 1.0)

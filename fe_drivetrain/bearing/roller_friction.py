@@ -73,14 +73,13 @@ def roller_friction(
         np.asarray(one, dtype=float).ravel()
         for one in np.broadcast_arrays(radial, axial, np.abs(speed), sliding)
     )
-    if not all(isinstance(row, RollerRow) for row in bearing.rows):
+    rows = [row for row in bearing.rows if isinstance(row, RollerRow)]
+    if len(rows) < len(bearing.rows):
         raise InputError(
             f"friction of the rollers of bearing {bearing.name!r}: it has balls; use another model"
         )
-    sliced = Bearing(
-        bearing.name,
-        tuple(replace(r, laminae=r.laminae or LAMINAE) for r in bearing.rows),  # type: ignore[union-attr, type-var]
-    )
+    rows = [replace(row, laminae=row.laminae or LAMINAE) for row in rows]
+    sliced = Bearing(bearing.name, tuple(rows))
     found = equilibrium(sliced, _carried(sliced, Fr, Fa))
     if not found.converged.all():
         raise InputError(
@@ -88,8 +87,7 @@ def roller_friction(
             f"{1e-3 * Fr.max():.3g} kN radially and {1e-3 * Fa.max():.3g} kN axially"
         )
     film, lost, slid = np.zeros((3, len(Fr)))
-    for row in sliced.rows:
-        assert isinstance(row, RollerRow)
+    for row in rows:
         loads = lamina_loads(row, found.displacements)
         rolled = _rolling(row, loads.sum(axis=2), omega, viscosity)
         film, lost = film + rolled[0], lost + rolled[1]

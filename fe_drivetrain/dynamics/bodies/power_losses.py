@@ -173,7 +173,7 @@ class Losses:
     @property
     def heat(self) -> Floats:
         """Power (p, n) that becomes heat in each part [W]."""
-        return self.taken * np.abs(self.speed)
+        return np.asarray(self.taken * np.abs(self.speed))
 
     @property
     def entering(self) -> Floats:
@@ -186,7 +186,8 @@ class Losses:
 
         At standstill friction has no direction: it is that without losses, give or take `held`.
         """
-        return (self.torque - np.sign(self.speed) * self.taken.sum(axis=0)) / abs(self.ratio)
+        left = self.torque - np.sign(self.speed) * self.taken.sum(axis=0)
+        return np.asarray(left / abs(self.ratio))
 
     @property
     def leaving(self) -> Floats:
