@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import as_printed
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.strength import (
@@ -131,7 +130,7 @@ def solved(one: Example) -> tuple[float, float, SectionStrength]:
     )
 
 
-def worked() -> tuple[Record, Floats]:
+def worked() -> Record:
     """Every printed number of a shoulder that has all steps printed, and those computed."""
     steel = _steel(TEMPERED, 1000e6, 800e6, 5e-6)
     size = (0.042, 0.004, 0.005)
@@ -160,7 +159,7 @@ def worked() -> tuple[Record, Floats]:
         "tau_tADK [MPa]": endured[2] / 1e6,
         "S_F [-]": float(combined_safety(np.array([0.0, 550e6, 130e6]), found.yields)),
         "S_D [-]": float(combined_safety(acting, endured)),
-    }, alpha
+    }
 
 
 PRINTED = (
@@ -179,6 +178,13 @@ PRINTED = (
 )
 def run(run: Run, page: Page) -> None:
     """Solve three examinations and one worked example with all of its steps."""
+    rows = examinations(page)
+    every_step(page)
+    answer(page, rows)
+
+
+def examinations(page: Page) -> list[Record]:
+    """Check the safety of each against the printed one."""
     page.section("Examinations")
     rows: list[Record] = []
     for one in EXAMPLES:
@@ -202,8 +208,13 @@ def run(run: Run, page: Page) -> None:
             }
         )
     page.table("Safety, and that of the printed solutions", rows)
+    return rows
+
+
+def every_step(page: Page) -> None:
+    """Check all numbers of the worked example."""
     page.section("All steps of one")
-    found, _ = worked()
+    found = worked()
     for (name, value), printed in zip(found.items(), PRINTED, strict=True):
         page.equals(
             f"{name.partition(' [')[0]} of the worked shoulder [{name.partition(' [')[2]}",
@@ -226,6 +237,10 @@ def run(run: Run, page: Page) -> None:
         "factor; the examinations, and this program, that of the section. Grooves, two keyways and "
         "press fits are formulas that one open program has; no printed result was found for them."
     )
+
+
+def answer(page: Page, rows: list[Record]) -> None:
+    """State whether the printed solutions are met."""
     figures = [
         page.judged(f"{name} of {one.name}", by="printed", printed=printed)
         for one in EXAMPLES
