@@ -112,7 +112,7 @@ def radius_to_zero(page: Page, radii: Floats) -> tuple[dict[str, float], float]:
 def thin_tubes(page: Page, bores: tuple[float, ...]) -> float:
     """Largest bore up to which formulas of solid shafts hold 5 %, with their error when solid."""
     rows: list[Record] = []
-    errors = {load: [] for load in LOADS}
+    errors: dict[str, list[float]] = {load: [] for load in LOADS}
     for bore in bores:
         step = Shoulder(1.0, STEP, 0.05, bore, bore)
         formula = turned_factors("shoulder", 1.0, step.depth, step.radius)
