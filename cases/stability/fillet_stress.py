@@ -152,8 +152,8 @@ def answer(page: Page, slopes: dict[str, float], last: float, band: float) -> No
     """State how stress grows, and where formulas end."""
     page.answer(
         "How small may a fillet be, and how thin a shaft, for its stress to be known?",
-        f"Stress grows as the radius to minus {slopes['bending']:.3f} in bending, as at a sharp "
-        f"corner; formulas of solid shafts hold 5\u00a0% up to a bore of {last:.2g} diameters.",
+        f"Bending stress grows as the radius to minus {slopes['bending']:.3f}, as at a sharp "
+        f"corner; formulas hold 5\u00a0% up to a bore of {last:.2g} diameters.",
         [
             page.value("exponent of the radius in tension", slopes["tension"]),
             page.value("exponent of the radius in bending", slopes["bending"]),
