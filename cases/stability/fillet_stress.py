@@ -112,7 +112,7 @@ def radius_to_zero(page: Page, radii: Floats) -> tuple[dict[str, float], float]:
 def thin_tubes(page: Page, bores: tuple[float, ...]) -> float:
     """Largest bore up to which formulas of solid shafts hold 5 %, with their error when solid."""
     rows: list[Record] = []
-    errors = {load: [] for load in LOADS}
+    errors: dict[str, list[float]] = {load: [] for load in LOADS}
     for bore in bores:
         step = Shoulder(1.0, STEP, 0.05, bore, bore)
         formula = turned_factors("shoulder", 1.0, step.depth, step.radius)
@@ -152,8 +152,8 @@ def answer(page: Page, slopes: dict[str, float], last: float, band: float) -> No
     """State how stress grows, and where formulas end."""
     page.answer(
         "How small may a fillet be, and how thin a shaft, for its stress to be known?",
-        f"Stress grows as the radius to minus {slopes['bending']:.3f} in bending, as at a sharp "
-        f"corner; formulas of solid shafts hold 5\u00a0% up to a bore of {last:.2g} diameters.",
+        f"Bending stress grows as the radius to minus {slopes['bending']:.3f}, as at a sharp "
+        f"corner; formulas hold 5\u00a0% up to a bore of {last:.2g} diameters.",
         [
             page.value("exponent of the radius in tension", slopes["tension"]),
             page.value("exponent of the radius in bending", slopes["bending"]),

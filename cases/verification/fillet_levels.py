@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -93,14 +94,12 @@ def points(run: Run) -> list[Point]:
                 timed(
                     MERIDIAN,
                     f"order {order}, {count} along the fillet",
-                    lambda order=order, count=count: by_meridian(order, count),
+                    partial(by_meridian, order, count),
                 )
             )
     for count in (3,) if run.quick else (3, 5, 8):
         with run.step(f"solid, {count} along the fillet"):
-            found.append(
-                timed(SOLID, f"{count} along the fillet", lambda count=count: by_solid(count))
-            )
+            found.append(timed(SOLID, f"{count} along the fillet", partial(by_solid, count)))
     return found
 
 

@@ -49,6 +49,7 @@ TITLES: Mapping[str, str] = {
     "loads": "Loads",
     "reactions": "Reactions",
     "life": "Life",
+    "strength": "Shaft strength",
     "modes": "Modes",
     "gears": "Gears",
     "stop": "Emergency stop",
@@ -282,6 +283,7 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
             show_life,
             write_life,
         ),
+        **strength_works(asked, scene),
         **turning_works(asked, scene),
         "model": Shown(lambda run: advise(scene, first, TOLERANCE, report=run.report), show_advise),
         "check": Shown(lambda run: check(scene, catalogues, report=run.report), show_check),
@@ -292,6 +294,35 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
     if not catalogue_entries(scene):
         del works["life"]
     return works
+
+
+def strength_works(asked: ReportRequest, scene: Scene) -> dict[str, Work]:
+    """What makes the part of the main shaft's strength; none where the file states none.
+
+    Parameters
+    ----------
+    asked : ReportRequest
+        Names the files of loads.
+    scene : Scene
+        The drivetrain.
+    """
+    from fe_drivetrain.command_line.strength_files import write_strength
+    from fe_drivetrain.pages.strength import show_strength
+    from fe_drivetrain.studies.shaft_strength import strength
+    from fe_drivetrain.studies.strength_options import StrengthOptions
+
+    if scene.strength is None:
+        return {}
+    options = StrengthOptions(
+        skip=asked.skip, channels=asked.channels, rotor_speed_rpm=asked.rotor_speed
+    )
+    return {
+        "strength": Shown(
+            lambda run: strength(scene, asked.loads, asked.place, options, report=run.report),
+            show_strength,
+            write_strength,
+        )
+    }
 
 
 def turning_works(asked: ReportRequest, scene: Scene) -> dict[str, Work]:

@@ -17,8 +17,6 @@ from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 
-_TABLES = ("sections", "stresses", "joints", "histories")
-
 
 @with_options(StrengthRequest, kept="files that are read are kept: run again with --resume")
 def strength_command(context: typer.Context, asked: StrengthRequest) -> int:
@@ -36,21 +34,13 @@ def strength_command(context: typer.Context, asked: StrengthRequest) -> int:
 
     check_result_folder(asked.folder)
     scene = read_drivetrain(asked.scene, parse_settings(asked.set_ or ()))
-    from fe_drivetrain.command_line.table_files import write_tables
+    from fe_drivetrain.command_line.strength_files import write_strength
     from fe_drivetrain.pages.strength import show_strength
     from fe_drivetrain.report.suite.case import Case
-    from fe_drivetrain.report.suite.page import Page
     from fe_drivetrain.report.suite.result_folders import run_case
-    from fe_drivetrain.report.suite.run import Run
-    from fe_drivetrain.studies.shaft_strength import StrengthResult, checked, strength
+    from fe_drivetrain.studies.shaft_strength import checked, strength
 
     options, loading = asked.options(), asked.loading()
-
-    def write(run: Run, page: Page, result: StrengthResult) -> None:
-        tables = {name: result.tables[name] for name in _TABLES}
-        facts = {"units": "as in the heads of columns", "x": "along the shaft, downwind"}
-        write_tables(run.folder, tables, dict.fromkeys(tables, facts))
-
     with show_steps() as report, scheduled_by(asked.scheduler):
         # before the run: a mistake leaves no trace in a folder of reports
         checked(scene, options, loading)
@@ -66,7 +56,7 @@ def strength_command(context: typer.Context, asked: StrengthRequest) -> int:
                 report=run.report,
             ),
             show_strength,
-            write,
+            write_strength,
         )
         case = Case(
             f"strength/{Path(asked.scene).stem}",

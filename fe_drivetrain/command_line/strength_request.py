@@ -19,13 +19,13 @@ from fe_drivetrain.command_line.options import (
     WindSite,
 )
 from fe_drivetrain.command_line.settings import SceneSettings, parse_loads
-from fe_drivetrain.common.components import FORCES
-from fe_drivetrain.studies.strength_options import StrengthLoading, StrengthOptions
+from fe_drivetrain.studies.strength_options import StrengthOptions
 
 if TYPE_CHECKING:
+    from fe_drivetrain.studies.strength_loading import StrengthLoading
     from fe_drivetrain.turbine_loads.histories.sites import Site
 
-_HUB = tuple(f"hub.{name}" for name in FORCES)
+_HUB = ("hub.Fx", "hub.Fy", "hub.Fz", "hub.Mx", "hub.My", "hub.Mz")
 
 
 @dataclass(frozen=True)
@@ -143,6 +143,7 @@ class StrengthRequest:
         """
         from fe_drivetrain.command_line.option_values import parse_site
         from fe_drivetrain.studies.gear_spectra import read_spectrum
+        from fe_drivetrain.studies.strength_loading import StrengthLoading
         from fe_drivetrain.turbine_loads.hub_loads.recorded import recorded_files
 
         site: Site | None = None if self.site is None else parse_site(self.site)

@@ -22,9 +22,9 @@ from fe_drivetrain.studies.scene_study import StudyResult
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
 REACTIONS, LIFE, LOADS, MODEL, CHECK = "reactions", "life", "loads", "model", "check"
-MODES, GEARS, STOP, EXPORT = "modes", "gears", "stop", "export"
+MODES, GEARS, STRENGTH, STOP, EXPORT = "modes", "gears", "strength", "stop", "export"
 """Parts of a dossier."""
-_SEVERE_FIRST = (LIFE, GEARS, REACTIONS, STOP, MODES, LOADS, MODEL, CHECK, EXPORT)
+_SEVERE_FIRST = (LIFE, GEARS, STRENGTH, REACTIONS, STOP, MODES, LOADS, MODEL, CHECK, EXPORT)
 DESIGN_LIFE = 20.0
 """Years that a wind turbine is designed for, at least (IEC 61400-1, 6.2)."""
 
@@ -91,7 +91,7 @@ def dossier(scene: Scene, parts: Mapping[str, Results]) -> DossierResult:
         The drivetrain.
     parts : mapping of str to Results
         By `REACTIONS`, which has to be there, `LIFE`, `LOADS`, `MODEL`, `CHECK`, `MODES`,
-        `GEARS`, `STOP` and `EXPORT`.
+        `GEARS`, `STRENGTH`, `STOP` and `EXPORT`.
 
     Returns
     -------
@@ -196,10 +196,11 @@ def _answer(found: Findings, rows: Sequence[Record], parts: Mapping[str, Results
             said += f"; {shortest['bearing']} lives {certain_value(life)}"
         else:
             said += f"; the bearings live {certain_value(life)} or more"
-    gears = parts[GEARS].answer if GEARS in parts else None
-    if gears is not None:
-        figures += [figure for figure in gears.figures if figure.quantity][:1]
-        said += "; gears are too weak" if gears.status == "bad" else ""
+    for name, weak in ((GEARS, "gears are too weak"), (STRENGTH, "the shaft is too weak")):
+        answer = parts[name].answer if name in parts else None
+        if answer is not None:
+            figures += [figure for figure in answer.figures if figure.quantity][:1]
+            said += f"; {weak}" if answer.status == "bad" else ""
     figures += _others(parts)
     found.answer(
         "What do these loads do to this drivetrain?",

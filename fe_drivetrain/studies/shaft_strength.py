@@ -26,7 +26,8 @@ from fe_drivetrain.studies.strength_answers import (
     section_answers,
 )
 from fe_drivetrain.studies.strength_findings import safety_chart, state_findings
-from fe_drivetrain.studies.strength_options import HOURS, StrengthLoading, StrengthOptions
+from fe_drivetrain.studies.strength_loading import StrengthLoading
+from fe_drivetrain.studies.strength_options import HOURS, StrengthOptions
 from fe_drivetrain.studies.strength_sections import StrengthShaft, stated_strength, strength_shaft
 from fe_drivetrain.studies.strength_sums import StrengthSums, class_sums, file_sums
 from fe_drivetrain.turbine_loads.histories.sites import (

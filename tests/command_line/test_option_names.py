@@ -33,6 +33,7 @@ from fe_drivetrain.studies import (
     GearOptions,
     LifeOptions,
     LoadOptions,
+    StrengthOptions,
     check,
     prepare_export,
 )
@@ -48,6 +49,7 @@ OWNERS = {
     "GearOptions": GearOptions,
     "LifeOptions": LifeOptions,
     "LoadOptions": LoadOptions,
+    "StrengthOptions": StrengthOptions,
     "CaptureTarget": CaptureTarget,
     "change_scene": change_scene,
 }

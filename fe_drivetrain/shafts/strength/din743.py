@@ -1,9 +1,9 @@
 """Strength of a shaft's section by nominal stresses: size, surface, notch, mean stress (DIN 743).
 
 DIN 743:2012 itself was not read. Equations are those that two independent open programs have in
-common (hanslhansl/din743, commit c38c5c6; Schulz and Huss, ME_Wellennachweis, commit 45cfc59), whose
-printed examples the case ``verification/din_743`` computes again. Of its S-N curves (part 4) no
-public text was found: slopes and knee are those of the FKM guideline, from memory, UNVERIFIED.
+common (hanslhansl/din743, commit c38c5c6; Schulz and Huss, ME_Wellennachweis, commit 45cfc59),
+whose printed examples the case ``verification/din_743`` computes again. Of its S-N curves (part 4)
+no public text was found: slopes and knee are those of the FKM guideline, from memory, UNVERIFIED.
 
 Vectors of three are tension, bending, torsion; stresses are in Pa and lengths in m.
 """
