@@ -113,8 +113,7 @@ def run(run: Run, page: Page) -> None:
     )
     answer(page, found)
     page.section("Whirl over the speed")
-    met = [(speed, speed / 60) for speed in found.speeds[1]]
-    page.add(campbell_of(found.chart, met, HERO))
+    page.add(campbell_of(found.chart, (found.speeds[1] * RPM).tolist(), HERO))
     page.table("Critical speeds without shear, as the source has it", printed_rows(found))
     page.section("Theories of the beam")
     page.table("Critical speeds of whirl once a turn by theory [rpm]", theory_rows())

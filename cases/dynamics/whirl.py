@@ -8,7 +8,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.dynamics import machine_of
 from fe_drivetrain.dynamics.whirl import stability_limit, whirl_modes
 from fe_drivetrain.pages import show_whirl
-from fe_drivetrain.report import trace
+from fe_drivetrain.report import marked
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
 from fe_drivetrain.studies import ShaftRotor, ShaftWhirl, WhirlResult, shaft_rotors, whirl
@@ -170,18 +170,15 @@ def show_damping(
         "its bearings have damping over stiffness that is a share of the shaft's."
     )
     page.table(DAMPED.format(main.name), rows)
-    known = [row for row in rows if row["over the first forward critical speed"] is not None]
+    known = [
+        (share, float(value))
+        for share, row in zip(shares, rows, strict=True)
+        if (value := row["over the first forward critical speed"]) is not None
+    ]
     if len(known) > 1:
         page.chart(
             DAMPED.format(main.name),
-            [
-                trace(
-                    main.name,
-                    [row["damping of bearings over that of the shaft"] for row in known],
-                    [row["over the first forward critical speed"] for row in known],
-                    mode="lines+markers",
-                )
-            ],
+            [marked(main.name, *zip(*known, strict=True))],
             "damping of bearings over stiffness, over the shaft's",
             "speed over the first forward critical speed",
         )

@@ -124,7 +124,7 @@ def run(run: Run, page: Page) -> None:
     show_decrements(page, viscous, run.quick)
     page.section("Whirl over the speed")
     over = np.linspace(HIGHEST / 24, HIGHEST, 24)
-    met = [(speed, speed / 60) for speed in criticals_rpm(shaft.rotor("timoshenko"), count=4)]
+    met = (criticals_rpm(shaft.rotor("timoshenko"), count=4) * RPM).tolist()
     page.add(
         campbell_of(
             whirl_chart(shaft.rotor("timoshenko"), over.tolist(), 6),

@@ -6,6 +6,7 @@ VM261), which print the papers' values.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -172,16 +173,18 @@ def input_rounding(
         Name of an input and half of its last digit; of a tuple each value by itself, where it is
         not 0.
     """
-    base, total = computed(published), 0.0
+    base = computed(published)
+    total = np.zeros_like(base)
     for name, half in half_digits:
         value = getattr(published, name)
         if not isinstance(value, tuple):
-            changed = [replace(published, **{name: value + half})]
+            many: list[dict[str, Any]] = [{name: value + half}]
         else:
-            changed = [
-                replace(published, **{name: (*value[:k], one + half, *value[k + 1 :])})
+            many = [
+                {name: (*value[:k], one + half, *value[k + 1 :])}
                 for k, one in enumerate(value)
                 if one
             ]
-        total = total + sum(np.abs(computed(one) - base) for one in changed)
-    return np.asarray(total)
+        for one in many:
+            total = total + np.abs(computed(replace(published, **one)) - base)
+    return total

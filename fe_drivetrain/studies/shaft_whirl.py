@@ -25,7 +25,7 @@ from fe_drivetrain.dynamics.whirl.modes import (
     stability_limit,
     whirl_chart,
 )
-from fe_drivetrain.dynamics.whirl.rotor import THEORIES, Rotor, rigid_rotor
+from fe_drivetrain.dynamics.whirl.rotor import THEORIES, Rotor, Theory, rigid_rotor
 from fe_drivetrain.dynamics.whirl.unbalance import UnbalanceResponse, unbalance_response
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
@@ -238,17 +238,16 @@ def _without_meshes(shaft: ShaftRotor, limit: float) -> float | None:
 
 def _ladder(shaft: ShaftRotor, limit: float) -> list[Rung]:
     """First critical at each level of the model, from the simplest, with processor times."""
-    makers = [("rigid shaft", lambda: rigid_rotor(shaft.rotor()))]
+    levels: list[tuple[str, int, Theory]] = [("rigid shaft", 0, "timoshenko")]
     if len(shaft.pieces):
-        makers += [
-            (f"{theory}, as few elements as it has pieces", lambda t=theory: shaft.rotor(1, t))
-            for theory in THEORIES
+        levels += [
+            (f"{theory}, as few elements as it has pieces", 1, theory) for theory in THEORIES
         ]
-        makers += [(f"timoshenko, {p} times as many", lambda p=p: shaft.rotor(p)) for p in (2, 4)]
+        levels += [(f"timoshenko, {p} times as many", p, "timoshenko") for p in (2, 4)]
     found = []
-    for name, make in makers:
+    for name, parts, theory in levels:
         begin = time.process_time()
-        rotor = make()
+        rotor = shaft.rotor(parts, theory) if parts else rigid_rotor(shaft.rotor())
         first = excited_critical(critical_speeds(rotor, 10.0 * limit))
         seconds = time.process_time() - begin
         speed = None if first is None else first.speed

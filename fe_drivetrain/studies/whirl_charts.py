@@ -32,16 +32,15 @@ def whirl_campbell(shaft: ShaftWhirl) -> Chart:
     shaft : ShaftWhirl
         What was found of it.
     """
-    met = [(one.speed * RPM, one.speed / (2 * np.pi)) for one in shaft.criticals]
-    low, high = (speed * RPM for speed in shaft.range)
-    return campbell_of(shaft.chart, met, CAMPBELL.format(shaft.name), (low, high))
+    met = [one.speed for one in shaft.criticals]
+    return campbell_of(shaft.chart, met, CAMPBELL.format(shaft.name), shaft.range)
 
 
 def campbell_of(
     found: WhirlChart,
-    criticals: Sequence[tuple[float, float]],
+    criticals: Sequence[float],
     caption: str,
-    operation: tuple[float | None, float | None] | None = None,
+    operation: tuple[float, float] | None = None,
 ) -> Chart:
     """Campbell diagram with a colour for each sense of whirl.
 
@@ -49,12 +48,12 @@ def campbell_of(
     ----------
     found : WhirlChart
         Modes over the speed.
-    criticals : sequence of tuple
-        Speed [rpm] and frequency [Hz] of each critical speed.
+    criticals : sequence of float
+        Speeds of whirl once a turn [rad/s].
     caption : str
         What it shows.
     operation : tuple of float, optional
-        Least and largest speed in operation [rpm], shaded.
+        Least and largest speed in operation [rad/s], shaded.
     """
     speeds = found.speeds * RPM
     lines: dict[str, dict[str, list[Any]]] = {word: {"x": [], "y": []} for word in COLOURS}
@@ -78,17 +77,18 @@ def campbell_of(
     top = float(speeds[-1])
     once = {"dash": "dot", "color": "#333333", "width": 1.2}
     traces.append(trace("once a turn", [0.0, top], [0.0, top / 60.0], line=once))
-    traces.append(crosses("critical speeds", *zip(*criticals, strict=True)) if criticals else {})
+    met = np.asarray(criticals, dtype=float) * RPM
+    traces.append(crosses("critical speeds", met, met / 60.0))
     # once a turn, and the first modes as far as they are not far above it
     few = float(np.nanmax(found.frequencies[:, :FEW], initial=0.0))
     highest = 1.15 * max(top / 60.0, min(few, 4.0 * top / 60.0))
     drawn = chart(
         caption,
-        [one for one in traces if one],
+        traces,
         "speed of the shaft [rpm]",
         "frequency [Hz]",
         (),
-        operation,
+        None if operation is None else (operation[0] * RPM, operation[1] * RPM),
         x_range=(0.0, top),
         y_range=(0.0, highest),
     )

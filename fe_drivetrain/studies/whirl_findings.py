@@ -191,8 +191,8 @@ def _check_power(found: Findings, shaft: ShaftWhirl) -> None:
         return
     apart = response.power - response.absorbed - response.inner
     found.vanishes(
-        f"{shaft.name}: power of unbalance less what bearings and shaft take, largest share of what "
-        "goes to and fro",
+        f"{shaft.name}: power of unbalance less what bearings and shaft take, over what goes to "
+        "and fro",
         float(np.abs(apart / response.swinging).max()),
         within=1e-9,
         why="round-off of one system of equations at each speed",

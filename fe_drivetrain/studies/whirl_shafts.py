@@ -274,7 +274,7 @@ def _shaft(
             continue
         place = _place(machine, line, stated) - bodies[at].position[0]
         W = wrench_transport(along_x(place))
-        speeds, K, C = _over_speed(stated.name, whirl, rollers, abs(line.speed))
+        speeds, K, C = over_speed(stated.name, whirl, rollers, abs(line.speed))
         own = support.stiffness if K is None else W @ K @ W.T
         bearings.append(bearing_of(stated.name, nodes[at], own, W @ C @ W.T, speeds, mirrored))
     for coupling, node, end in zip(couplings, (nodes[0], nodes[-1]), (-1, 0), strict=True):
@@ -320,10 +320,31 @@ def _place(machine: Machine, line: Line, bearing: BearingData) -> float:
     return centres[bearing.holds] + bearing.at
 
 
-def _over_speed(
+def over_speed(
     name: str, whirl: WhirlData, rollers: RollerTables | None, ratio: float
 ) -> tuple[Sequence[float], Floats | None, Floats]:
-    """Speeds of its shaft, stiffness (k, 6, 6) there if not that of its row, and damping (6, 6)."""
+    """Stiffness of a bearing over the speed, where it is stated or that of its rollers.
+
+    Parameters
+    ----------
+    name : str
+        Name of the bearing.
+    whirl : WhirlData
+        What the file states, which comes first.
+    rollers : RollerTables or None
+        Stiffness of rollers over the rotor's speed.
+    ratio : float
+        Speed of the bearing's shaft over the rotor's.
+
+    Returns
+    -------
+    speeds : sequence of float
+        Speeds (k,) of the shaft [rad/s].
+    stiffness : ndarray (k, 6, 6) or None
+        Stiffness there [N/m, N, N m/rad]; None where it is that of its row.
+    damping : ndarray, (6, 6)
+        Damping [N s/m, N m s/rad].
+    """
     stated = whirl.of_bearing(name)
     damping = np.zeros((6, 6)) if stated is None else np.diag(stated.damping)
     if stated is not None and stated.over_speed:

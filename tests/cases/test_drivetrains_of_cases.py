@@ -318,6 +318,10 @@ OF_NO_OTHER = {
         "of one stage with printed frequencies at rest: `modes` has those of a drivetrain": (
             "dynamics/lin_parker",
         ),
+        "of a rotor whose whirl is published: dynamics/whirl has that of a drivetrain": (
+            "dynamics/nelson_mcvaugh",
+            "dynamics/zorzi_nelson",
+        ),
         "of a theorem on a stage by itself: the next stage of a drivetrain breaks its symmetry": (
             "dynamics/helical_planets",
         ),

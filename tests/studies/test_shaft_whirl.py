@@ -13,6 +13,7 @@ from fe_drivetrain.command_line import main
 from fe_drivetrain.common import InputError
 from fe_drivetrain.drivetrain_file import parse_drivetrain, read_drivetrain
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.reading import library_text, scene_text
 from fe_drivetrain.drivetrain_file.whirl_data import WhirlData
 from fe_drivetrain.dynamics import machine_of
@@ -21,7 +22,7 @@ from fe_drivetrain.dynamics.whirl.rotor import Disc
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.studies.shaft_whirl import WhirlResult, whirl
 from fe_drivetrain.studies.whirl_rollers import roller_tables
-from fe_drivetrain.studies.whirl_shafts import shaft_rotors
+from fe_drivetrain.studies.whirl_shafts import over_speed, shaft_rotors
 
 RPM = math.pi / 30.0
 NAME = "grc_750kw"
@@ -65,15 +66,18 @@ def test_a_pinion_behind_a_coupling_is_a_disc_on_its_bearings(found: WhirlResult
 
 
 def test_planets_are_carried_by_the_main_shaft() -> None:
+    """Their masses are there, and turn about its axis on the circle of their centres."""
     machine = machine_of(read_drivetrain(NAME))
     main_shaft = shaft_rotors(machine, None)[0]
     stage = machine.stages[0]
-    planet, _ = stage.planet.inertias(  # type: ignore[union-attr]
-        stage.centre_distance - stage.sun_radius,  # type: ignore[union-attr]
-        stage.face_width,
-    )
-    heaviest = sorted(disc.mass for disc in main_shaft.discs)
-    assert heaviest.count(pytest.approx(planet)) == 3
+    assert isinstance(stage, PlanetaryData)
+    radius = stage.centre_distance - stage.sun_radius
+    mass, _ = stage.planet.inertias(radius, stage.face_width)
+    carried = [disc for disc in main_shaft.discs if disc.mass == pytest.approx(mass)]
+    assert len(carried) == 3
+    for disc in carried:
+        assert disc.polar == pytest.approx(mass * stage.centre_distance**2)
+        assert disc.transverse > disc.polar / 2
 
 
 def test_bearings_over_the_speed_act_at_the_speed_of_their_shaft() -> None:
@@ -181,10 +185,17 @@ def test_rollers_stiffen_with_the_torque_and_centrifugal_forces_are_small() -> N
     for stiffness in tables.stiffness.values():
         assert stiffness.shape == (len(tables.speeds), 6, 6)
         np.testing.assert_allclose(stiffness, stiffness.swapaxes(1, 2))
-    assert tables.rows
-    for row in tables.rows:
-        assert float(row["centrifugal force of a roller [N]"]) > 0  # type: ignore[arg-type]
-        assert float(row["centrifugal force over that load, at most [%]"]) < 1  # type: ignore[arg-type]
+    shares = [row["centrifugal force over that load, at most [%]"] for row in tables.rows]
+    assert all(isinstance(share, float) and 0 < share < 1 for share in shares)
+    # a shaft four times as fast has its bearings' stiffness at four times the speeds
+    name = "PLC-A"
+    speeds, stiffness, _ = over_speed(name, WhirlData(), tables, 4.0)
+    np.testing.assert_allclose(speeds, 4.0 * tables.speeds)
+    assert stiffness is tables.stiffness[name]
+    own = WhirlData.model_validate(
+        {"bearings": [{"name": name, "over_speed": [{"speed": 3, "stiffness": [1] * 6}]}]}
+    )
+    assert list(over_speed(name, own, tables, 4.0)[0]) == [3.0]
 
 
 def test_the_command_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

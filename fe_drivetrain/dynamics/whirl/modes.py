@@ -191,7 +191,8 @@ def _conservative(M: Floats, G: Floats, K: Floats) -> tuple[Complex, Complex]:
     n = len(M)
     kept = np.flatnonzero(found > 1e3 * n * np.finfo(float).eps)[::-1]
     shapes = linalg.solve_triangular(L, vectors[:n, kept], lower=True, trans=1)
-    return np.asarray(1j / (unit * found[kept])), np.asarray(shapes)
+    values = np.asarray(1j / (unit * found[kept]), dtype=np.complex128)
+    return values, np.asarray(shapes, dtype=np.complex128)
 
 
 def _solved(
@@ -269,7 +270,7 @@ def whirl_chart(rotor: Rotor, speeds: Sequence[float], count: int) -> WhirlChart
     rest, first = whirl_modes(rotor, 0.0, count), whirl_modes(rotor, speeds[0], count)
     # strong damping may leave fewer at one of the speeds
     kept = min(len(rest.values), len(first.values))
-    mass = np.kron(np.eye(2), rotor.mass)
+    mass = np.asarray(np.kron(np.eye(2), rotor.mass), dtype=np.float64)
     rows = [(rest.frequencies[:kept], rest.decrements[:kept], np.full(kept, np.nan))]
     shapes = first.shapes[:, :kept]
     for speed in speeds:

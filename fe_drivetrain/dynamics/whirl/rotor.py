@@ -405,7 +405,7 @@ def equations(rotor: Rotor, speed: float) -> Equations:
     both, turned = np.eye(2), np.array([[0.0, 1.0], [-1.0, 0.0]])
     inner = rotor.viscous * rotor.stiffness
     return Equations(
-        np.kron(both, rotor.mass),
+        np.asarray(np.kron(both, rotor.mass), dtype=np.float64),
         absorbed + speed * np.kron(turned, rotor.gyroscopic) + np.kron(both, inner),
         stood + np.kron(both, rotor.stiffness) + speed * np.kron(turned, inner),
         stood,
