@@ -6,6 +6,11 @@ from .closed_forms import closed_form_errors as closed_form_errors
 from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
+from .design_request import DesignRequest as DesignRequest
+from .design_request import Limit as Limit
+from .design_request import design_request as design_request
+from .design_search import SearchResult as SearchResult
+from .design_search import search as search
 from .dossier_overview import DossierResult as DossierResult
 from .dossier_overview import dossier as dossier
 from .drivetrain_modes import ModesResult as ModesResult
