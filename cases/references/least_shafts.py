@@ -43,7 +43,10 @@ class LeastShaft:
 
 
 def bending_stiffness(
-    lengths: Sequence[float], outer: Sequence[float], bores: Sequence[float] | Floats, modulus: float
+    lengths: Sequence[float],
+    outer: Sequence[float],
+    bores: Sequence[float] | Floats,
+    modulus: float,
 ) -> float:
     """Stiffness of one end against a moment, the other held [N m/rad].
 

@@ -34,6 +34,7 @@ from .load_facts import hub_load_rows as hub_load_rows
 from .load_histories import LoadsResult as LoadsResult
 from .load_histories import loads as loads
 from .load_winds import CaptureTarget as CaptureTarget
+from .openmdao_component import design_component as design_component
 from .part_survey import PartResult as PartResult
 from .part_survey import part as part
 from .project_validation import ValidateResult as ValidateResult
