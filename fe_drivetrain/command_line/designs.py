@@ -1,26 +1,26 @@
-"""The command ``compare``: designs side by side, or one design over values of a parameter."""
+"""The command ``compare``: designs side by side, over values of a parameter, or searched."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
-from fe_drivetrain.command_line.names import complete_scene
-from fe_drivetrain.command_line.options import Scheduler, with_options
+from fe_drivetrain.command_line.design_options import (
+    CompareRequest,
+    refuse_without_search,
+    run_search,
+)
+from fe_drivetrain.command_line.options import with_options
 from fe_drivetrain.command_line.settings import (
-    Loads,
-    SceneSettings,
-    Tolerance,
     parse_loads,
     parse_settings,
     parse_tolerance,
 )
 from fe_drivetrain.command_line.showing import Shown
-from fe_drivetrain.command_line.studies import OutFolder, loads_of_drivetrain, run_on_scene
+from fe_drivetrain.command_line.studies import loads_of_drivetrain, run_on_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
@@ -34,58 +34,27 @@ if TYPE_CHECKING:
 _MAXIMUM = 50
 
 
-@dataclass(frozen=True)
-class CompareRequest:
-    """Arguments and options of ``compare`` as typed; each help text says what one is."""
-
-    scenes: Annotated[
-        list[str],
-        typer.Argument(
-            metavar="SCENE...",
-            autocompletion=complete_scene,
-            help="Scene files, or names of the library: the others are compared with the first.",
-        ),
-    ]
-    vary: Annotated[
-        str | None,
-        typer.Option(
-            "--vary",
-            metavar="KEY=VALUES",
-            help="Compare one scene over values of a parameter: a list, as in "
-            "shaft.sections.0.inner_diameter=0.2,0.3,0.4, or a range and a number of values, as in "
-            "0.2:0.4:5.",
-        ),
-    ] = None
-    quantity: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--quantity",
-            metavar="NAME",
-            help="What is compared: a reaction, as in main_bearing.My, or a stiffness, "
-            "hub.stiffness.ux to hub.stiffness.rz; or what turns, as in modes.torsional.1. May be "
-            "repeated. Default: all reactions and stiffnesses.",
-        ),
-    ] = None
-    tolerance: Tolerance = "5%"
-    load: Loads = None
-    scheduler: Scheduler = None
-    out: OutFolder = None
-    set_: SceneSettings = None
-
-
 @with_options(CompareRequest)
 def compare_command(context: typer.Context, asked: CompareRequest) -> int:
-    """Compare designs: the differences of their stiffnesses and reactions, ranked.
+    """Compare designs: what changes, ranked; with --minimise find the best one within limits.
 
     Each quantity comes from the cheapest level that is enough: its bands in both designs together
     are within the tolerance. A change that is smaller than its band may be zero: it is named.
 
-    The exit status is 0 if every change is known within the tolerance, 1 if not.
+    With --minimise, values of --vary are searched for the design that is least in mass, cost or
+    another quantity and keeps each --limit at the level that is enough. Stopped, it goes on where
+    it was.
+
+    The exit status is 0 if every change is known within the tolerance, or every limit is kept, and
+    1 if not.
     """
     hold_threads()
+    if asked.minimise is not None:
+        return run_search(asked)
+    refuse_without_search(asked)
     scenes = asked.scenes
     changes = parse_settings(asked.set_ or ())
-    varied = None if asked.vary is None else parse_values(asked.vary)
+    varied = None if not asked.vary else parse_values(_only(asked.vary))
     designs = _designs(scenes, changes, varied)
     from fe_drivetrain.pages.compare import show_compare
     from fe_drivetrain.studies.design_comparison import compare
@@ -107,6 +76,16 @@ def compare_command(context: typer.Context, asked: CompareRequest) -> int:
         ),
         scheduler=asked.scheduler,
     )
+
+
+def _only(texts: Sequence[str]) -> str:
+    """The one parameter that is varied without a search."""
+    if len(texts) > 1:
+        raise InputError(
+            f"--vary is given {len(texts)} times: a comparison is over values of one parameter; "
+            "name what shall be least with --minimise to search over several"
+        )
+    return texts[0]
 
 
 def _quantities(

@@ -59,6 +59,8 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
         "mine.yaml stiffer.yaml",
         "two_bearings --vary shaft.front=-1.2:-0.8:5",
         "synthetic_2mw --vary generator.inertia=60:120:4 --quantity modes.torsional.1",
+        "two_bearings --vary shaft.sections.0.inner_diameter=0.05:0.5 --minimise mass --limit "
+        "'tilt<=0.4 mrad' --load hub.Fz=-8e5",
     ),
     "uncertainty": (
         "mine.yaml --quantity main_bearing.My --sobol",

@@ -6,6 +6,11 @@ from .closed_forms import closed_form_errors as closed_form_errors
 from .design_comparison import CompareResult as CompareResult
 from .design_comparison import Varied as Varied
 from .design_comparison import compare as compare
+from .design_request import DesignRequest as DesignRequest
+from .design_request import Limit as Limit
+from .design_request import design_request as design_request
+from .design_search import SearchResult as SearchResult
+from .design_search import search as search
 from .dossier_overview import DossierResult as DossierResult
 from .dossier_overview import dossier as dossier
 from .drivetrain_modes import ModesResult as ModesResult
@@ -29,6 +34,7 @@ from .load_facts import hub_load_rows as hub_load_rows
 from .load_histories import LoadsResult as LoadsResult
 from .load_histories import loads as loads
 from .load_winds import CaptureTarget as CaptureTarget
+from .openmdao_component import design_component as design_component
 from .part_survey import PartResult as PartResult
 from .part_survey import part as part
 from .project_validation import ValidateResult as ValidateResult

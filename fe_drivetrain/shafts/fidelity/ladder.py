@@ -236,7 +236,7 @@ def shaft_level(
     body = body if standing is None else standing.body
     found = supported(body, scene_supports(scene, housings), scene.coupled_units)
     n = len(body.names)
-    columns = _unit_loads(scene, body)
+    columns = point_loads(scene, body)
     reactions = {name: R @ columns for name, R in found.reactions.items()}
     if standing is not None:
         on_bearings = standing.reactions(found.motions)
@@ -359,7 +359,7 @@ class _Weighed(Mapping[str, Floats]):
         return len(self._bare)
 
 
-def _unit_loads(scene: Scene, body: Condensed) -> Floats:
+def point_loads(scene: Scene, body: Condensed) -> Floats:
     """(6 n + 3, n_loads): a scene's unit loads, of those at n points and of gravity."""
     n = len(body.names)
     columns = np.zeros((6 * n + 3, len(scene_loads(scene))))
@@ -376,4 +376,4 @@ def _applied(scene: Scene, body: Condensed, positions: Floats) -> Floats:
     """(6, n_loads) resultants of a scene's unit loads about the hub."""
     n = len(body.names)
     carry = point_motions(positions, positions[0]).T
-    return carry @ np.hstack([np.eye(6 * n), body.gravity]) @ _unit_loads(scene, body)
+    return carry @ np.hstack([np.eye(6 * n), body.gravity]) @ point_loads(scene, body)

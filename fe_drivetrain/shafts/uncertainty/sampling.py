@@ -36,6 +36,7 @@ STEP = 1e-3
 SHARE = 0.95
 
 _RESAMPLES = 999
+_FINER = (0.5, 0.25, 0.125, 0.0625)  # of mesh sizes, where a wall asks for smaller ones
 _CONSTANT = 1e-9  # relative: below it no input matters to a result
 
 
@@ -181,10 +182,10 @@ def nominal_value(scene: Drivetrain, key: str) -> float:
     return nominal_values(scene, [key])[0]
 
 
-def with_values(scene: Stated, values: Mapping[str, float]) -> Stated:
+def with_values(scene: Stated, values: Mapping[str, Any]) -> Stated:
     """The scene with other values by dotted key, materials that come with the program included.
 
-    Where a thinner wall does not allow the scene's mesh sizes, half of these.
+    Where a thinner wall does not allow the scene's mesh sizes, a half or less of these.
     """
     if not isinstance(scene, Scene):
         return changed(scene, values, "drivetrain")
@@ -192,9 +193,10 @@ def with_values(scene: Stated, values: Mapping[str, float]) -> Stated:
     try:
         return changed(whole, values, "scene")
     except InputError:
-        finer = whole.model_copy(update={"mesh": scene.mesh.scaled(0.5)})
-        with suppress(InputError):
-            return changed(finer, values, "scene")
+        for factor in _FINER:
+            finer = whole.model_copy(update={"mesh": scene.mesh.scaled(factor)})
+            with suppress(InputError):
+                return changed(finer, values, "scene")
         raise
 
 

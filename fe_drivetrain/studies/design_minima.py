@@ -1,0 +1,233 @@
+"""The least design at the cheap level, corrected by what a better level says of it.
+
+Cheap quantities are multiplied by the ratio that the better level gave at the last design, and the
+search goes on from there, until both agree (multiplicative correction: Alexandrov et al. 2001, J.
+Aircraft 38(6), with ratios that stay as they are between two checks). The cheap level gives all
+gradients, the better one a few values.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.comparison.constrained_minimum import (
+    Minimum,
+    constrained_minimum,
+    distinct_minima,
+    least_violation,
+)
+from fe_drivetrain.shafts.uncertainty.kept_rows import EVERY
+from fe_drivetrain.studies.design_request import Limit
+from fe_drivetrain.studies.design_trials import DesignTrials
+
+MARGIN = 1e-4
+"""Share by which limits are kept more than exactly: what a search leaves then breaks none."""
+
+KEPT = 0.5 * MARGIN
+"""Share of a limit that a search may leave of its margin."""
+
+_LEAST = 1e-12  # of a limit: what is less counts as this
+_UNBUILT = 10.0  # value and limits of what cannot be built: worse than any design nearby
+
+Ratios = Mapping[str, Floats]
+"""Of the better level to the cheap one, by quantity."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A design on the way of a search.
+
+    Attributes
+    ----------
+    start, made : int
+        Number of its start, and of designs that were computed until then.
+    value, violation : float
+        What shall be least, and by how much the worst limit is broken, relative.
+    """
+
+    start: int
+    made: int
+    value: float
+    violation: float
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A search over the ranges, with one combination of values of lists.
+
+    Attributes
+    ----------
+    trials : DesignTrials
+        Designs.
+    minimise : str
+        Name of what shall be least.
+    limits : tuple of Limit
+        Limits.
+    size : float
+        Size of what shall be least, which values are relative to.
+    ratios : Mapping[str, Floats]
+        Corrections, see `Ratios`; empty for none.
+    """
+
+    trials: DesignTrials
+    minimise: str
+    limits: tuple[Limit, ...]
+    size: float
+    ratios: Ratios
+
+    __repr__ = short_repr
+
+    def corrected(self, at: Floats) -> dict[str, Floats] | None:
+        """Quantities at a place, corrected; None of a design that cannot be built."""
+        found = self.trials.quantities(at)
+        if found is None:
+            return None
+        return {name: values * self.ratios.get(name, 1.0) for name, values in found.items()}
+
+    def functions(self, at: Floats) -> Floats:
+        """Value and limits as `constrained_minimum` takes them, all relative."""
+        found = self.corrected(at)
+        rows = self.rows
+        if found is None:
+            return np.full(1 + len(rows), _UNBUILT)
+        parts = [found[self.minimise][:1] / self.size]
+        for limit in self.limits:
+            parts.append(self.excess(limit, found[limit.name]) + MARGIN)
+        return np.concatenate(parts)
+
+    def excess(self, limit: Limit, values: Floats) -> Floats:
+        """By how much values break a limit, relative; negative where they keep it."""
+        size = limit.value * limit.size(self.trials.asked.units[limit.name])
+        # of stiffness and life, which change by orders of magnitude, the logarithm is the flattest
+        found = np.log(np.maximum(values / size, _LEAST))
+        return np.asarray(-found if limit.at_least else found)
+
+    @property
+    def rows(self) -> list[int]:
+        """Number of the limit that each row of `functions` after the first is of."""
+        counts = self.trials.counts
+        return [n for n, limit in enumerate(self.limits) for _ in range(counts[limit.name])]
+
+    def with_limit(self, number: int, factor: float) -> Problem:
+        """The problem with one limit times a factor."""
+        limits = list(self.limits)
+        limits[number] = replace(limits[number], value=limits[number].value * factor)
+        return replace(self, limits=tuple(limits))
+
+    def prices(self, minimum: Minimum) -> list[float]:
+        """Relative change of the least value for a relative change of each limit, both upwards."""
+        found = [0.0] * len(self.limits)
+        for row, number in enumerate(self.rows):
+            sign = 1.0 if self.limits[number].at_least else -1.0
+            found[number] += sign * float(minimum.multipliers[row])
+        value = float(minimum.values[0])
+        return [price / value for price in found]
+
+
+def minima_of(
+    problem: Problem, starts: list[Floats], report: Callable[[str], object], path: list[Trial]
+) -> list[Minimum]:
+    """Minima from each of several starts; what is tried on the way goes into ``path``.
+
+    Parameters
+    ----------
+    problem : Problem
+        The search.
+    starts : list of ndarray
+        Places to start from.
+    report : callable
+        Called with what is being done.
+    path : list of Trial
+        Takes the designs on the way.
+    """
+    found, shown = [], [time.monotonic()]
+    for number, start in enumerate(starts, 1):
+
+        def functions(at: Floats, number: int = number) -> Floats:
+            values = problem.functions(at)
+            count = problem.trials.made + problem.trials.kept
+            path.append(
+                Trial(number, count, float(values[0]) * problem.size, float(values[1:].max()))
+            )
+            now = time.monotonic()
+            if now - shown[0] > EVERY:
+                shown[0] = now
+                report(f"start {number} of {len(starts)}, {count} designs")
+            return values
+
+        found.append(constrained_minimum(functions, start))
+    return found
+
+
+def best_of(problem: Problem, found: list[Minimum]) -> list[Minimum]:
+    """Distinct minima that keep all limits, the least first.
+
+    Parameters
+    ----------
+    problem : Problem
+        The search.
+    found : list of Minimum
+        From all starts.
+
+    Raises
+    ------
+    InputError
+        No design keeps all limits; the sentence names those that conflict.
+    """
+    kept = distinct_minima(found, KEPT)
+    if not kept:
+        raise infeasible(problem, min(found, key=lambda one: one.violation).at)
+    return kept
+
+
+def infeasible(problem: Problem, near: Floats) -> InputError:
+    """Which limits conflict, and what comes nearest to keeping them.
+
+    Parameters
+    ----------
+    problem : Problem
+        The search.
+    near : ndarray, (d,)
+        Place to begin at.
+    """
+    if problem.corrected(near) is None and problem.trials.fault is not None:
+        return InputError(f"no design within the ranges can be built: {problem.trials.fault}")
+    worst = least_violation(problem.functions, near)
+    shares = np.zeros(len(problem.limits))
+    for row, number in enumerate(problem.rows):
+        shares[number] += worst.multipliers[row]
+    violation = worst.violation - MARGIN
+    sign = -1.0 if problem.limits[int(shares.argmax())].at_least else 1.0
+    violation = sign * float(np.expm1(sign * violation))  # of limits the logarithm is taken
+    conflict = [str(problem.limits[n]) for n in np.flatnonzero(shares > 1e-3)]
+    values = problem.trials.values_at(worst.at)
+    nearest = ", ".join(
+        f"{key}={value:.6g}" if isinstance(value, float) else f"{key}={value}"
+        for key, value in values.items()
+    )
+    ends = [
+        f"{key} is at the {'lower' if end < 0 else 'upper'} end of its range"
+        for key, end in zip(problem.trials.asked.request.ranges, worst.at_ends, strict=True)
+        if abs(end) > 1e-9
+    ]
+    what = (
+        f"{' and '.join(conflict)} conflict: no design within the ranges keeps them together"
+        if len(conflict) > 1
+        else f"{conflict[0]} is kept by no design within the ranges"
+        if conflict
+        else "no design within the ranges keeps all limits"
+    )
+    several = len(conflict) > 1
+    there = f" ({'; '.join(ends)})" if ends else ""
+    return InputError(
+        f"{what}; the nearest, {nearest}{there}, breaks {'each' if several else 'it'} by "
+        f"{100.0 * violation:.3g} %: relax {'one of them' if several else 'it'}, or widen the "
+        "ranges"
+    )

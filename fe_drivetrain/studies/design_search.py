@@ -1,0 +1,389 @@
+"""The design that is least in mass, cost or another quantity within limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.comparison.constrained_minimum import Minimum, starting_points
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.report.charts import chart, trace
+from fe_drivetrain.report.results import Chart
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.design_levels import CheckedQuantity, checked_quantities
+from fe_drivetrain.studies.design_minima import (
+    KEPT,
+    MARGIN,
+    Problem,
+    Trial,
+    best_of,
+    infeasible,
+    minima_of,
+)
+from fe_drivetrain.studies.design_quantities import DesignQuantities
+from fe_drivetrain.studies.design_request import DesignRequest
+from fe_drivetrain.studies.design_statement import FrontPoint, shown_size, state_search
+from fe_drivetrain.studies.design_trials import DesignTrials
+from fe_drivetrain.studies.result import Result
+
+STARTS = 4
+_ROUNDS = 8  # of checks and corrections
+_SETTLED = 1e-4  # of its range: a value that moves less does not move
+_FRONT = np.geomspace(0.6, 1.6, 9)  # of the limit whose front is shown
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class SearchResult(Result):
+    """The least design within limits, what they cost, and the way of the search.
+
+    Attributes
+    ----------
+    request : DesignRequest
+        What was asked for.
+    design : Drivetrain
+        The design.
+    values : Mapping[str, Any]
+        Value of each key that may vary.
+    quantities : Mapping[str, CheckedQuantity]
+        Each quantity of the design at the level that is enough.
+    units : Mapping[str, str]
+        Their units.
+    prices : Mapping[str, float]
+        By limit, as it is written: by how much the least value grows where the limit is tightened
+        by one of its unit.
+    front : tuple of FrontPoint
+        Least value over one limit, others as they are.
+    history : tuple of Trial
+        Designs on the way.
+    made : int
+        Designs that were computed at the cheap level, kept ones included.
+    """
+
+    STUDY: ClassVar[str] = "search"
+    SCHEMA_VERSION: ClassVar[int] = 1
+
+    request: DesignRequest
+    design: Drivetrain = field(repr=False)
+    values: Mapping[str, Any]
+    quantities: Mapping[str, CheckedQuantity]
+    units: Mapping[str, str]
+    prices: Mapping[str, float]
+    front: tuple[FrontPoint, ...]
+    history: tuple[Trial, ...]
+    made: int
+
+    def chart(self) -> Chart:
+        """Least value over one limit; without such a front, the way of the search."""
+        name, unit = self.request.minimise, self.units[self.request.minimise]
+        size, shown = shown_size(unit)
+        y = f"{name} [{shown}]" if shown else name
+        if len(self.front) > 1:
+            limit = self.front[0].limit
+            x = f"{limit.name} [{limit.unit or self.units[limit.name]}]"
+            line = trace(
+                "least within all other limits",
+                [one.limit.value for one in self.front],
+                [one.value / size for one in self.front],
+                points=True,
+            )
+            return chart(f"Least {name} over the limit of {limit.name}", [line], x, y)
+        return self.way()
+
+    def way(self) -> Chart:
+        """Designs on the way of the search: the least so far that keeps all limits."""
+        name, unit = self.request.minimise, self.units[self.request.minimise]
+        size, shown = shown_size(unit)
+        least, x, y = np.inf, [], []
+        for one in self.history:
+            if one.violation <= KEPT and one.value < least:
+                least = one.value
+                x.append(one.made)
+                y.append(least / size)
+        line = trace("least so far within all limits", x, y, points=True)
+        axis = f"{name} [{shown}]" if shown else name
+        return chart("The way of the search", [line], "designs computed", axis)
+
+
+@dataclass(frozen=True, eq=False)
+class _Candidate:
+    """The minimum of one combination of values of lists, and what a better level said of it."""
+
+    problem: Problem
+    minimum: Minimum
+    agreeing: int
+    others: list[Minimum]
+    path: list[Trial]
+    checked: Mapping[str, CheckedQuantity] = field(default_factory=dict)
+
+    @property
+    def value(self) -> float:
+        return float(self.minimum.values[0]) * self.problem.size
+
+
+def search(
+    drivetrain: Drivetrain,
+    request: DesignRequest,
+    tolerance: float = 0.05,
+    starts: int = STARTS,
+    front: str | None = None,
+    *,
+    report: Progress = silent,
+) -> SearchResult:
+    """Find the design that is least in mass, cost or another quantity within limits.
+
+    Values with a range are found by gradients of the cheapest level from several starts; each
+    combination of values of lists is tried. Every quantity of the design is then checked at the
+    level that is enough, and where that says otherwise the search goes on with the cheap level
+    corrected, until the limits are kept at the better one. A search that was stopped goes on where
+    it was.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain as it is.
+    request : DesignRequest
+        What may vary, what shall be least, and within which limits; see
+        `fe_drivetrain.studies.design_request`.
+    tolerance : float
+        Band over value up to which a level is enough.
+    starts : int
+        Number of starts: the drivetrain itself, and others that fill the ranges.
+    front : str or None
+        Name of the limit whose values are swept; None for that which costs most.
+    report : Progress
+        Called with the name of each step as it begins.
+
+    Raises
+    ------
+    InputError
+        A name, a range or a limit is wrong, no design can be built, or limits conflict.
+    """
+    if starts < 1:
+        raise InputError(f"starts is {starts} but must be 1 at least: give a number of starts")
+    if not 0.0 < tolerance < 1.0:
+        raise InputError(f"tolerance is {100 * tolerance:g} % but must be between 0 and 100 %")
+    names = [limit.name for limit in request.limits]
+    if front is not None and front not in names:
+        raise InputError(f"front {front!r} is of no limit: use one of {', '.join(names)}")
+    found, steps = Findings(), Steps(report)
+    found.about(drivetrain)
+    asked = DesignQuantities(drivetrain, request)
+    with steps.step("the drivetrain as it is"):
+        now = asked.values(drivetrain)
+    size = float(now[request.minimise][0])
+    if not size > 0.0:
+        raise InputError(f"{request.minimise} is {size:g} and cannot be made less: ask for another")
+    with steps.step("search at the cheap level"):
+        candidates, conflicts = _candidates(asked, now, size, starts, steps.report)
+    with steps.step("check at the level that is enough"):
+        best = _checked(candidates, tolerance, steps.report)
+    with steps.step("front"):
+        points = _front(best, front, steps.report)
+    problem = best.problem
+    values = problem.trials.values_at(best.minimum.at)
+    prices = _prices(best)
+    state_search(found, best.problem, best.minimum, best.checked, prices, now)
+    made = sum(one.problem.trials.made + one.problem.trials.kept for one in candidates)
+    _state_starts(found, best, starts, made, conflicts)
+    found.data("front", [one.record(problem.trials.asked.units) for one in points])
+    design = problem.trials.design(best.minimum.at)
+    for one in candidates:
+        one.problem.trials.keep()
+    return SearchResult(
+        request=request,
+        design=design,
+        values=values,
+        quantities=best.checked,
+        units=asked.units,
+        prices=prices,
+        front=tuple(points),
+        history=tuple(best.path),
+        made=made,
+        **found.frozen(steps.times, **_stated(request, tolerance, starts, front)),
+    )
+
+
+def _candidates(
+    asked: DesignQuantities,
+    now: Mapping[str, Any],
+    size: float,
+    starts: int,
+    report: Progress,
+) -> tuple[list[_Candidate], list[InputError]]:
+    """The least design of every combination of values of lists, the least of all first."""
+    request = asked.request
+    counts = {name: len(values) for name, values in now.items()}
+    first = np.array(request.start(asked.drivetrain))
+    found, conflicts = [], []
+    choices = request.choices()
+    for number, choice in enumerate(choices, 1):
+        trials = DesignTrials(asked, counts, choice)
+        problem = Problem(trials, request.minimise, request.limits, size, {})
+        of = f"combination {number} of {len(choices)}, " if len(choices) > 1 else ""
+        path: list[Trial] = []
+        try:
+            minima = minima_of(
+                problem,
+                starting_points(first, starts),
+                _named(report, f"level 1: {of}"),
+                path,
+            )
+            kept = best_of(problem, minima)
+        except InputError as error:
+            conflicts.append(error)
+            continue
+        finally:
+            trials.keep()
+        near = [np.abs(one.at - kept[0].at).max(initial=0.0) < 1e-3 for one in minima]
+        found.append(_Candidate(problem, kept[0], sum(near), kept[1:], path))
+    if not found:
+        raise conflicts[0]
+    return sorted(found, key=lambda one: one.value), conflicts
+
+
+def _checked(
+    candidates: Sequence[_Candidate], tolerance: float, report: Callable[[str], object]
+) -> _Candidate:
+    """The least candidate at the level that is enough; what is more at the cheap one waits."""
+    best: _Candidate | None = None
+    faults = []
+    for one in candidates:
+        if best is not None and one.value >= best.value:
+            break
+        try:
+            corrected = _corrected(one, tolerance, report)
+        except InputError as error:
+            faults.append(error)
+            continue
+        if best is None or corrected.value < best.value:
+            best = corrected
+    if best is None:
+        raise faults[0]
+    return best
+
+
+def _corrected(one: _Candidate, tolerance: float, report: Callable[[str], object]) -> _Candidate:
+    """A candidate whose limits are kept at the level that is enough."""
+    problem, minimum, path = one.problem, one.minimum, list(one.path)
+    trials = problem.trials
+    for number in range(1, _ROUNDS + 1):
+        checked = checked_quantities(
+            trials.asked,
+            trials.design(minimum.at),
+            tolerance,
+            _named(report, f"round {number}: "),
+        )
+        cheap = trials.quantities(minimum.at)
+        assert cheap is not None
+        ratios = {name: _ratio(of.values, cheap[name]) for name, of in checked.items()}
+        kept = all(
+            problem.excess(limit, checked[limit.name].values).max() <= 0.0
+            for limit in problem.limits
+        )
+        problem = replace(problem, ratios=ratios)
+        before = minimum.at
+        (minimum,) = minima_of(problem, [before], _named(report, "corrected: "), path)
+        if minimum.violation > KEPT:
+            raise infeasible(problem, minimum.at)
+        if kept and np.abs(minimum.at - before).max(initial=0.0) < _SETTLED:
+            # what was checked is what is shown
+            shown = replace(minimum, at=before)
+            return replace(one, problem=problem, minimum=shown, path=path, checked=checked)
+    raise InputError(
+        f"levels 1 and {', '.join({of.level for of in checked.values()})} do not agree on a design "
+        f"after {_ROUNDS} rounds: make ranges narrower, or the tolerance larger"
+    )
+
+
+def _named(report: Callable[[str], object], words: str) -> Progress:
+    """Reports what is being done with words before it."""
+
+    def said(step: str, lane: int = 0) -> None:
+        report(f"{words}{step}")
+
+    return said
+
+
+def _ratio(better: Any, cheap: Any) -> Any:
+    """Of the better level to the cheap one; 1 where a value is zero."""
+    return np.where((cheap != 0.0) & (better != 0.0), better / np.where(cheap == 0, 1, cheap), 1.0)
+
+
+def _prices(best: _Candidate) -> dict[str, float]:
+    """By how much the least value grows where a limit is tightened by one of its unit."""
+    relative = best.problem.prices(best.minimum)
+    found = {}
+    for limit, price in zip(best.problem.limits, relative, strict=True):
+        tighter = price if limit.at_least else -price
+        found[str(limit)] = tighter * best.value / limit.value + 0.0  # no negative zero
+    return found
+
+
+def _front(best: _Candidate, name: str | None, report: Callable[[str], object]) -> list[FrontPoint]:
+    """Least values over a limit, from the design outwards; where limits conflict it ends."""
+    problem, limits = best.problem, best.problem.limits
+    if not len(best.minimum.at):
+        return []
+    prices = np.abs(problem.prices(best.minimum))
+    number = int(prices.argmax()) if name is None else [one.name for one in limits].index(name)
+    if name is None and not prices.any():
+        return []
+    points = []
+    for factors in (_FRONT[_FRONT <= 1.0][::-1], _FRONT[_FRONT > 1.0]):
+        at = best.minimum.at
+        for factor in factors:
+            other = problem.with_limit(number, float(factor))
+            limit = other.limits[number]
+            (minimum,) = minima_of(other, [at], _named(report, f"front, {limit}: "), [])
+            if minimum.violation > KEPT:
+                break
+            at = minimum.at
+            values = problem.trials.values_at(at)
+            points.append(FrontPoint(limit, float(minimum.values[0]) * problem.size, values))
+    return sorted(points, key=lambda one: one.limit.value)
+
+
+def _state_starts(
+    found: Findings,
+    best: _Candidate,
+    starts: int,
+    made: int,
+    conflicts: Sequence[InputError],
+) -> None:
+    """How the search went: designs, starts that agree, other minima, combinations left out."""
+    if len(best.minimum.at):
+        found.say(
+            f"{best.agreeing} of {starts} starts end at this design; {made} designs were computed "
+            "at the cheap level."
+        )
+    for other in best.others:
+        value = float(other.values[0]) / float(best.minimum.values[0])
+        found.note(
+            f"Another start ends at another design, {100 * (value - 1.0):+.3g} % in "
+            f"{best.problem.minimise}: more starts may find more."
+        )
+    for conflict in conflicts:
+        found.note(f"A combination of values is left out: {conflict}")
+
+
+def _stated(
+    request: DesignRequest, tolerance: float, starts: int, front: str | None
+) -> dict[str, Any]:
+    """What was asked for, as plain data."""
+    return {
+        "vary": {key: list(values) for key, values in request.vary.items()},
+        "minimise": request.minimise,
+        "limits": [str(limit) for limit in request.limits],
+        "prices": dict(request.prices),
+        "load": dict(request.load),
+        "tolerance": tolerance,
+        "starts": starts,
+        "front": front,
+        "margin": MARGIN,
+    }

@@ -1,0 +1,250 @@
+"""What a search found, in words, figures, checks and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.comparison.constrained_minimum import ACTIVE, Minimum, slopes
+from fe_drivetrain.drivetrain_file.units import unit_of_key
+from fe_drivetrain.report.number_text import formatted
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.report.suite.records import Record
+from fe_drivetrain.studies.design_levels import CheckedQuantity
+from fe_drivetrain.studies.design_minima import Problem
+from fe_drivetrain.studies.design_request import Limit
+
+BALANCED = 1e-3
+"""Part of the gradient that multipliers may leave at a minimum."""
+
+_SHOWN: Mapping[str, tuple[float, str]] = {"kg": (1e3, "t"), "m": (1e-3, "mm"), "-": (1.0, "")}
+_NOTHING = 1e-9  # of a gradient: a value that changes less changes nothing
+_FIGURES = 4
+
+
+@dataclass(frozen=True, eq=False)
+class FrontPoint:
+    """The least value with one limit at another value.
+
+    Attributes
+    ----------
+    limit : Limit
+        The limit.
+    value : float
+        The least value.
+    values : Mapping[str, Any]
+        Values of the design.
+    """
+
+    limit: Limit
+    value: float
+    values: Mapping[str, Any]
+
+    def record(self, units: Mapping[str, str]) -> Record:
+        """As a row of a table; the least value in the unit of its quantity.
+
+        Parameters
+        ----------
+        units : mapping of str to str
+            Unit by quantity.
+        """
+        unit = self.limit.unit or units[self.limit.name]
+        return {f"{self.limit.name} [{unit}]": self.limit.value, "least": self.value, **self.values}
+
+
+def shown_size(unit: str) -> tuple[float, str]:
+    """Size of the unit in which a least value is shown, and its name.
+
+    Parameters
+    ----------
+    unit : str
+        Unit of the quantity.
+    """
+    return _SHOWN.get(unit, (1.0, unit))
+
+
+def state_search(
+    found: Findings,
+    problem: Problem,
+    minimum: Minimum,
+    checked: Mapping[str, CheckedQuantity],
+    prices: Mapping[str, float],
+    now: Mapping[str, Floats],
+) -> None:
+    """State the design: answer, checks of all limits, tables, and what has no effect.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes them.
+    problem, minimum : Problem, Minimum
+        The search, and the design.
+    checked : mapping of str to CheckedQuantity
+        Its quantities at the level that is enough.
+    prices : mapping of str to float
+        See `fe_drivetrain.studies.design_search.SearchResult`.
+    now : mapping of str to ndarray
+        Quantities of the drivetrain as it is, at the cheap level.
+    """
+    asked = problem.trials.asked
+    for limit in problem.limits:
+        _judge(found, limit, checked[limit.name], asked.units[limit.name])
+    if len(minimum.at):
+        found.at_most(
+            "gradient that no limit balances, over the gradient",
+            minimum.residual,
+            BALANCED,
+            why="a minimum within limits has none (Karush, Kuhn and Tucker); differences have some",
+            source="gradients of the cheap level, corrected by the better one",
+        )
+    _explain(found, problem, minimum)
+    found.data("design", design_rows(problem, minimum))
+    found.data("limits", limit_rows(problem, checked, prices, now))
+    _answer(found, problem, minimum, checked, prices, now)
+
+
+def _worst(limit: Limit, of: CheckedQuantity) -> int:
+    """Number of the value that is nearest to breaking a limit."""
+    return int(of.values.argmin() if limit.at_least else of.values.argmax())
+
+
+def _judge(found: Findings, limit: Limit, of: CheckedQuantity, unit: str) -> None:
+    size, k = limit.size(unit), _worst(limit, of)
+    shown = limit.unit or unit
+    judge = found.at_least if limit.at_least else found.at_most
+    judge(
+        f"{limit.name} [{shown}]",
+        float(of.values[k]) / size,
+        limit.value,
+        band=float(of.bands[k]) / size or None,
+        why="the limit that was asked for",
+        source=f"level {of.level}" if of.level[0].isdigit() else of.level,
+    )
+
+
+def _answer(
+    found: Findings,
+    problem: Problem,
+    minimum: Minimum,
+    checked: Mapping[str, CheckedQuantity],
+    prices: Mapping[str, float],
+    now: Mapping[str, Floats],
+) -> None:
+    """State the least value, what it was, and which limits decide."""
+    name, asked = problem.minimise, problem.trials.asked
+    size, unit = shown_size(asked.units[name])
+    least, band = (float(part[0]) / size for part in (checked[name].values, checked[name].bands))
+    before = float(now[name][0]) / size
+    active = [str(limit) for limit in problem.limits if prices[str(limit)] > 0.0]
+    apart = f"{formatted(abs(least / before - 1.0) * 100, 2)}\u00a0%"
+    verdict = (
+        f"The least {name} is {formatted(least, 4)}\u00a0{unit}".rstrip("\u00a0")
+        + f", {apart} {'less' if least < before else 'more'} than now; "
+    )
+    if active:
+        named = " and ".join(one.replace(" ", "\u00a0") for one in active[:2])
+        verdict += f"{named} decide{'s' if len(active) == 1 else ''}."
+    else:
+        verdict += "no limit decides, only the ends of ranges."
+    label = f"least {name} [{unit}]" if unit else f"least {name}"
+    figures = [found.value(label, least, band or None, beside=before, by="now")]
+    figures += [found.judged(limit.name) for limit in problem.limits[:_FIGURES]]
+    if len(figures) < 3:
+        figures.append(found.value("limits that decide", len(active)))
+    cautions = []
+    for limit in problem.limits:
+        of = checked[limit.name]
+        k, size = _worst(limit, of), limit.size(asked.units[limit.name]) * limit.value
+        left = (of.values[k] / size - 1.0) * (1.0 if limit.at_least else -1.0)
+        if of.bands[k] / size > max(left, 1e-3):
+            cautions.append(
+                f"The band of {limit.name} at its level, ±{100 * of.bands[k] / size:.2g}\u00a0%, "
+                "reaches beyond the limit: tighten it by so much to be sure."
+            )
+    found.answer(f"Which design has the least {name}?", verdict, figures, cautions=cautions[:3])
+
+
+def _explain(found: Findings, problem: Problem, minimum: Minimum) -> None:
+    """Values at ends of their ranges, and those that change nothing."""
+    keys = list(problem.trials.asked.request.ranges)
+    if not keys:
+        return
+    gradients = np.abs(slopes(problem.functions, minimum.at)).max(axis=0)
+    for key, at, slope in zip(keys, minimum.at, gradients, strict=True):
+        if slope < _NOTHING:
+            found.note(f"{key} changes nothing that was asked for: any value of its range serves.")
+        elif at < ACTIVE or at > 1.0 - ACTIVE:
+            end = "lower" if at < ACTIVE else "upper"
+            found.say(f"{key} is at the {end} end of its range: a wider one would give less.")
+
+
+def design_rows(problem: Problem, minimum: Minimum) -> list[Record]:
+    """Value of every key that may vary, with the drivetrain's own and its range.
+
+    Parameters
+    ----------
+    problem, minimum : Problem, Minimum
+        The search, and the design.
+    """
+    from fe_drivetrain.common.reading import value_by_key
+
+    trials = problem.trials
+    data = trials.asked.drivetrain.model_dump(mode="json")
+    rows: list[Record] = []
+    for key, value in trials.values_at(minimum.at).items():
+        unit = unit_of_key(trials.asked.drivetrain, key)
+        given = trials.asked.request.vary[key]
+        rows.append(
+            {
+                "key": f"{key} [{unit}]" if unit else key,
+                "now": value_by_key(data, key),
+                "found": value,
+                "may be": ", ".join(map(str, given))
+                if key in trials.choice
+                else f"{given[0]:g} to {given[1]:g}",
+            }
+        )
+    return rows
+
+
+def limit_rows(
+    problem: Problem,
+    checked: Mapping[str, CheckedQuantity],
+    prices: Mapping[str, float],
+    now: Mapping[str, Floats],
+) -> list[Record]:
+    """Every limit with the value that is nearest to it, and what it costs.
+
+    Parameters
+    ----------
+    problem : Problem
+        The search.
+    checked, prices, now : mapping
+        See `state_search`.
+    """
+    units, (size, shown) = (
+        problem.trials.asked.units,
+        shown_size(problem.trials.asked.units[problem.minimise]),
+    )
+    rows: list[Record] = []
+    for limit in problem.limits:
+        of, unit = checked[limit.name], limit.unit or units[limit.name]
+        k, one = _worst(limit, of), limit.size(units[limit.name])
+        ratio = float(np.broadcast_to(problem.ratios.get(limit.name, 1.0), of.values.shape)[k])
+        rows.append(
+            {
+                "limit": str(limit),
+                "unit": unit,
+                "now, level 1": float(now[limit.name][k]) / one,
+                "found": float(of.values[k]) / one,
+                "±": float(of.bands[k]) / one,
+                "level": of.level,
+                "level 1 says": float(of.values[k]) / ratio / one,
+                f"one {unit} tighter costs [{shown or '-'}]": prices[str(limit)] / size,
+            }
+        )
+    return rows
