@@ -7,7 +7,6 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg
-from scipy.optimize import linear_sum_assignment
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.components import MOTIONS
@@ -248,6 +247,8 @@ def likest_modes(system: System, shapes: Floats | Complex, turning: TurningModes
     ndarray, (k,)
         -1 where there is no mode left.
     """
+    from scipy.optimize import linear_sum_assignment
+
     sizes = [
         np.einsum("ij,ij->j", of.conj(), system.mass @ of).real for of in (shapes, turning.shapes)
     ]
