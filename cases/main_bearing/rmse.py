@@ -241,7 +241,7 @@ def errors_by_mesh(run: Run, work: Worked) -> bands.Series:
     _, second, third = PUBLISHED
     with run.step("bands of the mean errors"):
         rows = [
-            of_one_mesh(work.hub, scene, f[f"reaction {name}"], f["K_R"][:, 1])
+            of_one_mesh(found.over, scene, f[f"reaction {name}"], f["K_R"][:, 1])
             for f in series.levels[:-1]
         ]
     rows.append((found.mean_error[second], found.mean_error[third], found.correlation[third]))
@@ -339,7 +339,8 @@ def answered(
 ) -> dict[str, calibrated.Errors]:
     """Give the answer, in both housings where the scene is the thesis's; errors by housing."""
     with run.step("both housings"):
-        errors = {name: calibrated.errors_of(work.hub, one) for name, one in work.housings.items()}
+        loads, over = work.hub.loads, work.found.over
+        errors = {n: calibrated.errors_of(loads, over, one) for n, one in work.housings.items()}
     if work.other is None:
         answer(page, work.found, work, error_band)
     else:
