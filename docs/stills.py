@@ -64,7 +64,7 @@ def draw_scene(scene: Scene, file: Path) -> None:
     for factor in (2.0, 1.5, 1.0):
         try:
             coarse = scene.model_copy(update={"mesh": scene.mesh.scaled(factor, 12)})
-            picture_of_model(build_model(coarse, mesh_scene(coarse)), file)
+            picture_of_model(build_model(coarse, mesh_scene(coarse)), file).wait()
             return
         except InputError as refusal:  # too coarse for a wall
             reason = refusal
@@ -82,7 +82,8 @@ def draw_component(component: Component, file: Path) -> None:
     free = next(n for n in solid.body.names if n not in component.supports)
     turn = 6 * solid.body.names.index(free) + 3
     motions = 1e6 * supported(solid.body, component.supports).motions[:, turn]
-    picture_of_displacements(solid.mesh, solid.displacements(motions), file)
+    _, drawn = picture_of_displacements(solid.mesh, solid.displacements(motions), file)
+    drawn.wait()
 
 
 def main(names: list[str]) -> None:

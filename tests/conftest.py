@@ -30,7 +30,7 @@ from fe_drivetrain.common.errors import MissingToolError
 from fe_drivetrain.common.progress import silent
 from fe_drivetrain.drivetrain_file.reading import change_scene
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
-from fe_drivetrain.report.pictures import off_screen
+from fe_drivetrain.report.pictures import drawing_process
 from fe_drivetrain.report.results import Results, read_results
 from fe_drivetrain.report.suite import case as case_module
 from fe_drivetrain.report.suite.case import Case
@@ -317,8 +317,12 @@ def kept_between_runs(kept_folder: Path) -> Iterator[None]:
 @pytest.fixture(scope="module")
 def without_pictures() -> Iterator[None]:
     """Draw nothing, as on a machine that cannot; of quick cases a third of the time is drawing."""
+
+    def refuse() -> None:
+        raise drawing_process.NoPictureError("no picture is asked for")
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(off_screen, "_refusal", lambda interpreter: "no picture is asked for")
+        patch.setattr(drawing_process, "_running", refuse)
         yield
 
 

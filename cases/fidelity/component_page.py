@@ -404,12 +404,13 @@ def show_picture(
     with run.step("picture"):
         try:
             u = solid.displacements(motions)
-            factor = picture_of_displacements(solid.mesh, u, run.folder / "deformed.png")
+            factor, drawn = picture_of_displacements(solid.mesh, u, run.folder / "deformed.png")
         except NoPictureError as reason:
             page.text(f"No picture: {reason}")
             return
         lame = dict.fromkeys(solid.mesh.part_names, material_of(component).lame)
         is_turned = write_solid_view(solid.mesh, {what: u}, lame, run.folder / "deformed.3d.json")
+        drawn.wait()
     caption = f"{what}; displacements times {factor:g}"
     if is_turned:
         page.add(Solid(caption=caption, file="deformed.3d.json", still="deformed.png"))

@@ -187,7 +187,7 @@ def check_rigid_housing(run: Run, page: Page) -> None:
 def picture(run: Run, page: Page, scene: Scene) -> None:
     """The model as it is drawn for a study."""
     try:
-        picture_of_model(build_model(scene, mesh_scene(scene)), run.folder / "model.png")
+        picture_of_model(build_model(scene, mesh_scene(scene)), run.folder / "model.png").wait()
         page.image("Ribbed block from a STEP file on bolts as beams", "model.png")
     except NoPictureError as error:
         page.note(f"no picture: {error}")

@@ -39,7 +39,8 @@ def picture_under_hub_load(run: Run, page: Page, model: Model, response: Respons
     """The model under 1 N down at the hub, exaggerated; a note where nothing can be drawn."""
     down, file = -np.eye(len(model.loads))[model.loads.index("hub.Fz")], run.folder / "deformed.png"
     try:
-        factor = picture_of_deformation(model, response, down, file, "1 N down")
+        factor, drawn = picture_of_deformation(model, response, down, file, "1 N down")
+        drawn.wait()
         page.image(f"1 N down at the hub, displacements times {factor:.3g}", "deformed.png")
     except NoPictureError as error:
         page.note(f"no picture: {error}")

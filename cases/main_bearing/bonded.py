@@ -19,7 +19,7 @@ from fe_drivetrain.common import (
 )
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
-from fe_drivetrain.report import Image, Solid, Text
+from fe_drivetrain.report import Image, Solid, Text, drawing_ready
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
@@ -149,7 +149,7 @@ class Worked:
 def solved_with_beams(run: Run, scene: Scene) -> Worked:
     """Solve the scene with and without its gearbox, on coarser meshes, too, and three beams."""
     main_bearing_beam(scene)  # refuses before the work what it cannot stand for
-    with run.side_by_side(5) as jobs:
+    with drawing_ready(), run.side_by_side(5) as jobs:
         mesh = timed_mesh(run, scene, "bonded")
         solving = jobs.start(bearing_scenes.solve_and_write, scene, "bonded", mesh, "mesh")
         tilting = jobs.start(bearing_scenes.solve_seat, scene, "without gearbox", mesh)
@@ -157,9 +157,9 @@ def solved_with_beams(run: Run, scene: Scene) -> Worked:
         coming = calibrated.start(run, jobs)
         solved = solving.result()
         load_factors = np.array([0, 0, -1e5, 0, 0, 0, 0, 0, 0, 0], dtype=float)
-        drawing = jobs.start(shown.pictures_of, solved, load_factors, "Fz = -100 kN at the hub")
+        drawing = shown.start_pictures(run, jobs, solved, load_factors, "Fz = -100 kN at the hub")
         tilt = tilting.result()
-        pictures = drawing.result()
+        pictures = drawing()
         series = coarser.below(bands.of_solved(solved) | bands.of_tilt(tilt))
         other = None if coming is None else coming.result()
     beams = closed_form_models(scene, {}, tilt)

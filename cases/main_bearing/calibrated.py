@@ -14,15 +14,14 @@ import numpy as np
 
 from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, shown
 from fe_drivetrain.cases.main_bearing.comparison import PUBLISHED, of_one_mesh
-from fe_drivetrain.common import FORCES
+from fe_drivetrain.common import FORCES, Floats
 from fe_drivetrain.drivetrain_file import Scene, library_scene
 from fe_drivetrain.report.suite import Jobs, Page, Record, Run, RunJob
 from fe_drivetrain.shafts.response import ESTIMATORS
 from fe_drivetrain.studies import Assembly, LinearModel, SeatStiffness
-from fe_drivetrain.studies.closed_forms import PINNED, SPRUNG, closed_form_models, force_errors
+from fe_drivetrain.studies.closed_forms import PINNED, SPRUNG, ForceComparison, closed_form_models
 from fe_drivetrain.studies.scene_description import quick_scene
 from fe_drivetrain.studies.solved_assembly import timed_mesh
-from fe_drivetrain.turbine_loads.hub_loads import HubLoadSet
 
 GENERIC, CALIBRATED = "generic housing", "calibrated housing"
 LABEL = "calibrated"
@@ -204,12 +203,12 @@ class Errors:
         return self.as_thesis[0] < 0.5 * self.pinned[0]
 
 
-def bands_of(hub: HubLoadSet, housed: Housed) -> tuple[float | None, float | None]:
+def bands_of(over: ForceComparison, housed: Housed) -> tuple[float | None, float | None]:
     """Bands of the mean errors of the pinned beam, and of springs by four nodes [%].
 
     Parameters
     ----------
-    hub : HubLoadSet
+    over : ForceComparison
         The histories.
     housed : Housed
         With coarser meshes; without them there are no bands.
@@ -220,7 +219,7 @@ def bands_of(hub: HubLoadSet, housed: Housed) -> tuple[float | None, float | Non
     levels = tuple(
         {
             "size": f["size"],
-            "errors": np.array(of_one_mesh(hub, scene, f[name], f["K_R"][:, FOUR_NODES])),
+            "errors": np.array(of_one_mesh(over, scene, f[name], f["K_R"][:, FOUR_NODES])),
         }
         for f in housed.series.levels
     )
@@ -229,13 +228,15 @@ def bands_of(hub: HubLoadSet, housed: Housed) -> tuple[float | None, float | Non
     return pinned, springs
 
 
-def errors_of(hub: HubLoadSet, housed: Housed) -> Errors:
+def errors_of(loads: Floats, over: ForceComparison, housed: Housed) -> Errors:
     """Errors of both beams in one housing.
 
     Parameters
     ----------
-    hub : HubLoadSet
-        The histories.
+    loads : Floats
+        (m, n, 6) the histories [N, N m].
+    over : ForceComparison
+        Errors over the same.
     housed : Housed
         Solved with its gearbox.
     """
@@ -243,10 +244,9 @@ def errors_of(hub: HubLoadSet, housed: Housed) -> Errors:
     scene = housed.solved.scene
     solid = LinearModel.of_fe(scene, housed.solved.response)
     beams = closed_form_models(scene, {}, housed.tilt)
-    loads, histories = hub.loads, list(hub.loads)
 
     def of(name: str) -> tuple[float, float]:
-        found = force_errors(solid, beams[name], histories)
+        found = over.errors(solid, beams[name])
         return found.mean_error_percent, found.correlation
 
     pinned, reference = (
@@ -254,8 +254,8 @@ def errors_of(hub: HubLoadSet, housed: Housed) -> Errors:
     )
     sprung = beams[SPRUNG.format("averaged seat")]
     without = {
-        "thrust": force_errors(solid.without(0), sprung.without(0), histories),
-        "torque": force_errors(solid.without(3), sprung.without(3), histories),
+        "thrust": over.errors(solid.without(0), sprung.without(0)),
+        "torque": over.errors(solid.without(3), sprung.without(3)),
     }
     return Errors(
         of(PINNED),
@@ -263,7 +263,7 @@ def errors_of(hub: HubLoadSet, housed: Housed) -> Errors:
         of(SPRUNG.format(THESIS_WAY)),
         pinned / reference,
         {name: found.mean_error_percent for name, found in without.items()},
-        *bands_of(hub, housed),
+        *bands_of(over, housed),
     )
 
 

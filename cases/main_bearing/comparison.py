@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,8 +19,8 @@ from fe_drivetrain.studies.closed_forms import (
     PINNED,
     SIXBYSIX,
     SPRUNG,
+    ForceComparison,
     closed_form_models,
-    force_errors,
 )
 from fe_drivetrain.turbine_loads.hub_loads import HubLoadSet
 
@@ -45,6 +45,8 @@ class Comparison:
 
     Attributes
     ----------
+    over : ForceComparison
+        Errors over all histories.
     fe : dict[str, Floats]
         (m, n, 6) reactions of the main bearing [N, N m] by kind, "spherical" and "bonded".
     pairs : dict[str, tuple[str, Floats]]
@@ -59,6 +61,7 @@ class Comparison:
         Wall time of turning all load steps into FE reactions [s].
     """
 
+    over: ForceComparison
     fe: dict[str, Floats]
     pairs: dict[str, tuple[str, Floats]]
     errors: dict[str, ForceErrors]
@@ -97,14 +100,15 @@ def compared(
     with run.step("beam models"):
         reactions = {beam: beams[beam].reaction(hub.loads) for _, beam in of_pairs.values()}
         pairs = {label: (kind, reactions[beam]) for label, (kind, beam) in of_pairs.items()}
-    histories = list(hub.loads)
+    over = ForceComparison(list(hub.loads))
     with run.step("comparison"):
         errors = {
-            label: force_errors(solids[kind], beams[beam], histories)
+            label: over.errors(solids[kind], beams[beam])
             for label, (kind, beam) in of_pairs.items()
         }
         theirs = LinearModel.on_springs(bonded.scene, *(1e6 * k for k in shown.PUBLISHED.values()))
         return Comparison(
+            over=over,
             fe=fe,
             pairs=pairs,
             errors=errors,
@@ -115,11 +119,11 @@ def compared(
                 for row in _by_quantity(label, fe[kind], model)
             ],
             estimators=[
-                _by_estimator(estimator, tilt, solids["bonded"], beams, histories)
+                _by_estimator(estimator, tilt, solids["bonded"], beams, over)
                 for estimator in ESTIMATORS
             ],
-            causes=_causes(histories, spherical, bonded, beams),
-            with_their_stiffness=force_errors(theirs, beams[PINNED], histories).mean_error_percent,
+            causes=_causes(over, spherical, bonded, beams),
+            with_their_stiffness=over.errors(theirs, beams[PINNED]).mean_error_percent,
             seconds=seconds,
         )
 
@@ -136,13 +140,13 @@ def _beams_of_pairs() -> dict[str, tuple[str, str]]:
 
 
 def of_one_mesh(
-    hub: HubLoadSet, scene: Scene, matrix: Floats, stiffness: Floats
+    over: ForceComparison, scene: Scene, matrix: Floats, stiffness: Floats
 ) -> tuple[float, float, float]:
     """Errors of both beams against a bonded bearing, with what one mesh gives.
 
     Parameters
     ----------
-    hub : HubLoadSet
+    over : ForceComparison
         The load histories.
     scene : Scene
         The bonded scene.
@@ -161,7 +165,7 @@ def of_one_mesh(
         closed_form_models(scene, {})[PINNED],
         LinearModel.on_springs(scene, float(stiffness[0]), float(stiffness[1])),
     )
-    pinned, sprung = (force_errors(solid, beam, list(hub.loads)) for beam in beams)
+    pinned, sprung = (over.errors(solid, beam) for beam in beams)
     return pinned.mean_error_percent, sprung.mean_error_percent, sprung.correlation
 
 
@@ -213,11 +217,11 @@ def _by_estimator(
     tilt: SeatStiffness,
     solid: LinearModel,
     beams: Mapping[str, LinearModel],
-    histories: Sequence[Floats],
+    over: ForceComparison,
 ) -> Record:
     """The torsional-spring beam with K_R of one estimator against bonded FE."""
     beam = beams[SPRUNG.format(estimator)]
-    found = force_errors(solid, beam, histories)
+    found = over.errors(solid, beam)
     vertical, horizontal = tilt.both(estimator)
     row: Record = {
         "estimator": estimator,
@@ -232,14 +236,14 @@ def _by_estimator(
             statistics.rmse(
                 *(h @ model.matrix[:, k] + model.constant[k] for model in (solid, beam))
             )
-            for h in histories
+            for h in over.histories
         ]
         row[f"RMSE {quantity} [kN]"] = float(np.mean(rmse)) / 1e3
     return row
 
 
 def _causes(
-    histories: Sequence[Floats],
+    over: ForceComparison,
     spherical: Assembly,
     bonded: Assembly,
     beams: Mapping[str, LinearModel],
@@ -263,7 +267,7 @@ def _causes(
     ]
     rows: list[Record] = []
     for label, what, reference, beam in cases:
-        found = force_errors(reference, beam, histories)
+        found = over.errors(reference, beam)
         rows.append(
             {
                 "comparison": label,

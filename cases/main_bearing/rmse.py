@@ -31,7 +31,7 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import weighted_statistics
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
-from fe_drivetrain.report import Image, Solid, Text
+from fe_drivetrain.report import Image, Solid, Text, drawing_ready
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.shafts.response import bearing_unit_stiffness
@@ -201,7 +201,7 @@ class Worked:
 def solved(run: Run, spherical_scene: Scene, bonded_scene: Scene) -> Worked:
     """Make the hub loads, solve both scenes, compare over all histories."""
     main_bearing_beam(spherical_scene)  # refuses early what it cannot stand for
-    with run.side_by_side(8) as jobs:
+    with drawing_ready(), run.side_by_side(8) as jobs:
         solving = jobs.start(
             bearing_scenes.solve_and_write, spherical_scene, "spherical", None, "mesh_spherical"
         )
@@ -220,12 +220,12 @@ def solved(run: Run, spherical_scene: Scene, bonded_scene: Scene) -> Worked:
         mean_load = np.zeros(10)
         mean_load[:6] = hub.loads.mean(axis=(0, 1))
         mean_load[9] = bonded_scene.gearbox.weight
-        drawing = jobs.start(
-            shown.pictures_of, spherical, mean_load, "the mean hub load of all histories"
+        drawing = shown.start_pictures(
+            run, jobs, spherical, mean_load, "the mean hub load of all histories"
         )
         bonded, tilt = solving_bonded.result(), tilting.result()
         found = compared(run, hub, spherical, bonded, tilt)
-        pictures = drawing.result()
+        pictures = drawing()
         series = {
             "spherical": coarser.below(bands.of_solved(spherical)),
             "bonded": coarser_bonded.below(bands.of_solved(bonded) | bands.of_tilt(tilt)),
@@ -241,7 +241,7 @@ def errors_by_mesh(run: Run, work: Worked) -> bands.Series:
     _, second, third = PUBLISHED
     with run.step("bands of the mean errors"):
         rows = [
-            of_one_mesh(work.hub, scene, f[f"reaction {name}"], f["K_R"][:, 1])
+            of_one_mesh(found.over, scene, f[f"reaction {name}"], f["K_R"][:, 1])
             for f in series.levels[:-1]
         ]
     rows.append((found.mean_error[second], found.mean_error[third], found.correlation[third]))
@@ -339,7 +339,8 @@ def answered(
 ) -> dict[str, calibrated.Errors]:
     """Give the answer, in both housings where the scene is the thesis's; errors by housing."""
     with run.step("both housings"):
-        errors = {name: calibrated.errors_of(work.hub, one) for name, one in work.housings.items()}
+        loads, over = work.hub.loads, work.found.over
+        errors = {n: calibrated.errors_of(loads, over, one) for n, one in work.housings.items()}
     if work.other is None:
         answer(page, work.found, work, error_band)
     else:

@@ -1,6 +1,6 @@
 """What every page of the main-bearing cases shows: checks, meshes, pictures, matrices, sources."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -13,11 +13,15 @@ from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.elasticity.mesh import quality
 from fe_drivetrain.report import (
     Image,
+    NoPictureError,
     Solid,
     Text,
+    begin_pictures,
+    deformed_view,
     model_pictures,
+    no_picture,
 )
-from fe_drivetrain.report.suite import Page, Run
+from fe_drivetrain.report.suite import Jobs, Page, Run
 from fe_drivetrain.shafts.response import (
     ESTIMATORS,
     LOADS,
@@ -183,6 +187,33 @@ def pictures_of(
     """
     with run.step("pictures"):
         return model_pictures(solved.model, solved.response, loads, run.folder, what)
+
+
+def start_pictures(
+    run: Run, jobs: Jobs, solved: Assembly, loads: Floats, what: str
+) -> Callable[[], Sequence[Image | Solid | Text]]:
+    """Begin `pictures_of` beside other work; what is returned waits for them.
+
+    Parameters
+    ----------
+    run, jobs : Run, Jobs
+        The run, whose folder takes the pictures, and what does its work side by side.
+    solved, loads, what : Assembly, Floats, str
+        See `pictures_of`.
+    """
+    try:
+        with run.step("pictures"):
+            begun = begin_pictures(solved.model, solved.response, loads, run.folder)
+    except NoPictureError as reason:
+        text = no_picture(reason)
+        return lambda: [text]
+    view = jobs.start(_view, solved, loads, what, begun.factor)
+    return lambda: begun.items(view.result())
+
+
+def _view(run: Run, solved: Assembly, loads: Floats, what: str, factor: float) -> Solid | Image:
+    with run.step("deformed shape for the browser"):
+        return deformed_view(solved.model, solved.response, loads, run.folder, what, factor)
 
 
 def assume(page: Page, scene: Scene) -> None:

@@ -18,7 +18,7 @@ from fe_drivetrain.common import (
 )
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
-from fe_drivetrain.report import Image, Solid, Text, trace
+from fe_drivetrain.report import Image, Solid, Text, drawing_ready, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.shafts.response import (
@@ -186,7 +186,7 @@ def axis_deflection(solved: Assembly, load: int, n_slices: int) -> tuple[Floats,
 def solved_forms(run: Run, scene: Scene) -> Worked:
     """Solve the three forms of the joint, and one of them on coarser meshes, too."""
     main_bearing_beam(scene)  # refuses before the work what it cannot stand for
-    with run.side_by_side(len(FORMS) + 2) as jobs:
+    with drawing_ready(), run.side_by_side(len(FORMS) + 2) as jobs:
         mesh = timed_mesh(run, scene, "all forms")  # which differ in their constraints only
         scenes = {form: bearing_scenes.with_interface(scene, form) for form in FORMS}
         solving = {
@@ -198,9 +198,9 @@ def solved_forms(run: Run, scene: Scene) -> Worked:
         coarser = bands.start(jobs, scenes[FORMS[0]], FORMS[0])
         main = solving[FORMS[0]].result()
         load_factors = np.array([0, 0, -1e5, 0, 0, 0, 0, 0, 0, 0], dtype=float)
-        drawing = jobs.start(shown.pictures_of, main, load_factors, "Fz = -100 kN at the hub")
+        drawing = shown.start_pictures(run, jobs, main, load_factors, "Fz = -100 kN at the hub")
         solved = {form: job.result() for form, job in solving.items()}
-        pictures = drawing.result()
+        pictures = drawing()
         series = coarser.below(bands.of_solved(main))
     return Worked(solved, series, pictures, closed_form_models(scene, {})[PINNED])
 

@@ -7,7 +7,6 @@ approach of the two races along the common normal; no load where they are apart.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1
 
 from fe_drivetrain.common.arrays import Floats
@@ -171,6 +170,8 @@ def point_contact(
     InputError
         A sum of curvatures is not positive: the bodies do not touch in a point.
     """
+    from scipy.optimize import brentq
+
     low, high = sorted(curvatures)
     if not low > 0.0:
         raise InputError(

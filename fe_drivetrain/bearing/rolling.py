@@ -12,7 +12,6 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import nnls
 
 from fe_drivetrain.bearing import kernels, newton
 from fe_drivetrain.bearing.contact_forces import (
@@ -355,6 +354,8 @@ def refuse_mechanism(bearing: Bearing, loads: Floats, B: Floats, carried: Bools)
 
 def refuse_lifted(bearing: Bearing, loads: Floats, cases: Ints) -> None:
     """Raise where no pushes of rollers add up to the load, such as a single row pushed open."""
+    from scipy.optimize import nnls
+
     rollers = [row for row in bearing.rows if isinstance(row, RollerRow)]
     if not len(loads) or len(rollers) < len(bearing.rows):
         return  # the normals of balls turn

@@ -148,7 +148,7 @@ def _draw(found: Survey, picture: Path) -> bool:
     with scratch_folder() as scratch:
         drawn = scratch / "picture.png"
         try:
-            picture_of_part(found.points, found.triangles, found.marks, drawn)
+            picture_of_part(found.points, found.triangles, found.marks, drawn).wait()
         except NoPictureError as error:
             write(sys.stderr, f"fe-drivetrain: no picture: {error}\n")
             return False

@@ -269,6 +269,7 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
             lambda run: study(scene, own, quick=run.quick, report=run.report),
             show_study,
             write_reactions,
+            draws=True,
         ),
         "life": Shown(
             lambda run: life(
@@ -286,7 +287,9 @@ def _works(asked: ReportRequest, scene: Scene, own: StudyLoads) -> dict[str, Wor
         **strength_works(asked, scene),
         **turning_works(asked, scene),
         "model": Shown(lambda run: advise(scene, first, TOLERANCE, report=run.report), show_advise),
-        "check": Shown(lambda run: check(scene, catalogues, report=run.report), show_check),
+        "check": Shown(
+            lambda run: check(scene, catalogues, report=run.report), show_check, draws=True
+        ),
         "export": Shown(
             lambda run: prepare_export(scene, report=run.report), show_export, write_shaft
         ),

@@ -27,6 +27,8 @@ class Shown(Generic[_R]):
         already; pictures go to the folder of the run.
     write : callable, optional
         Writes files to the folder of the run, and lists them in the last section.
+    draws : bool
+        Whether it shows pictures: then the process that draws starts before the study.
 
     Attributes
     ----------
@@ -39,12 +41,22 @@ class Shown(Generic[_R]):
         study: Callable[[Run], _R],
         show: Callable[[Run, Page, _R], None],
         write: Callable[[Run, Page, _R], None] | None = None,
+        draws: bool = False,
     ) -> None:
-        self._study, self._show, self._write = study, show, write
+        self._study, self._show, self._write, self._draws = study, show, write, draws
         self.result: _R | None = None
 
     def __call__(self, run: Run, page: Page) -> None:
         """Make the study, and fill the page."""
+        if not self._draws:
+            self._make(run, page)
+            return
+        from fe_drivetrain.report.pictures.drawing_process import drawing_ready
+
+        with drawing_ready():
+            self._make(run, page)
+
+    def _make(self, run: Run, page: Page) -> None:
         result = self._study(run)
         run.take(result)
         self.result = result_with_options(result)

@@ -52,18 +52,17 @@ def check_command(
 
     def work() -> int:
         hold_threads()
-        found = read_drivetrain(scene, parse_settings(set_ or ()))
-        from fe_drivetrain.pages.check import show_check
-        from fe_drivetrain.studies.scene_check import check
+        from fe_drivetrain.report.pictures.drawing_process import drawing_ready
 
-        title = f"{found.title}: what the drivetrain is, and what it costs"
-        return run_on_scene(
-            "check",
-            [scene],
-            title,
-            out,
-            Shown(lambda run: check(found, tuple(catalogue or ()), report=run.report), show_check),
-        )
+        with drawing_ready():
+            found = read_drivetrain(scene, parse_settings(set_ or ()))
+            from fe_drivetrain.pages.check import show_check
+            from fe_drivetrain.studies.scene_check import check
+
+            title = f"{found.title}: what the drivetrain is, and what it costs"
+            entries = tuple(catalogue or ())
+            study = Shown(lambda run: check(found, entries, report=run.report), show_check)
+            return run_on_scene("check", [scene], title, out, study)
 
     raise typer.Exit(guarded(work))
 

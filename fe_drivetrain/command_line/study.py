@@ -133,6 +133,7 @@ def study_command(context: typer.Context, asked: StudyRequest) -> int:
             lambda run: study(scene, own, slopes, asked.weight, run.quick, report=run.report),
             show_study,
             lambda run, page, result: write_study(run, page, result, histories),
+            draws=True,
         ),
         asked.quick,
         asked.scheduler,

@@ -101,9 +101,7 @@ def mean_percentage_error(
     """
     r, m = _pair(reference, model)
     kept = _kept(r, exclude_below)
-    share = np.zeros(r.shape)
-    np.divide(np.abs(_difference(r, m)), np.abs(r), out=share, where=kept)
-    return 100.0 * ratio(share.sum(axis=-1), kept.sum(axis=-1))
+    return _mean_percentage(np.abs(_difference(r, m)), np.abs(r), kept)
 
 
 def excluded_share(reference: ArrayLike, exclude_below: float = 1e-3) -> Floats:
@@ -119,10 +117,45 @@ def correlation(reference: ArrayLike, model: ArrayLike) -> Floats:
     vary says nothing about how another varies with it. Blind to scale and bias, so never to be
     read without them.
     """
+    return _correlation(*_pair(reference, model))
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorsAtOnce:
+    """Statistics of one pair, for which their common parts are computed once; (...) each.
+
+    Attributes
+    ----------
+    mean_percentage_error, relative_error, correlation, excluded_share : Floats
+        As the functions of these names have them.
+    """
+
+    mean_percentage_error: Floats
+    relative_error: Floats
+    correlation: Floats
+    excluded_share: Floats
+
+
+def errors_at_once(
+    reference: ArrayLike, model: ArrayLike, exclude_below: float = 1e-3
+) -> ErrorsAtOnce:
+    """Several statistics of one pair, to the last digit as the functions of their names.
+
+    Parameters
+    ----------
+    reference, model : array_like, (..., n)
+        Samples along the last axis.
+    exclude_below : float
+        See `mean_percentage_error`.
+    """
     r, m = _pair(reference, model)
-    a, b = _centred(r), _centred(m)
-    product = np.einsum("...i,...i->...", a, b)
-    return np.clip(ratio(product / r.shape[-1], _rms(a) * _rms(b)), -1.0, 1.0)
+    kept, apart, size = _kept(r, exclude_below), np.abs(_difference(r, m)), np.abs(r)
+    return ErrorsAtOnce(
+        _mean_percentage(apart, size, kept),
+        ratio(np.asarray(apart.mean(axis=-1)), np.asarray(size.mean(axis=-1))),
+        _correlation(r, m),
+        np.asarray(1.0 - kept.mean(axis=-1)),
+    )
 
 
 def model_uncertainty(reference: ArrayLike, model: ArrayLike) -> tuple[Floats, Floats]:
@@ -242,6 +275,18 @@ def _pair(reference: ArrayLike, model: ArrayLike) -> tuple[Floats, Floats]:
                 f"{name} holds a value that is not finite: remove NaN and infinity first."
             )
     return r, m
+
+
+def _mean_percentage(apart: Floats, size: Floats, kept: NDArray[np.bool_]) -> Floats:
+    share = np.zeros(size.shape)
+    np.divide(apart, size, out=share, where=kept)
+    return 100.0 * ratio(share.sum(axis=-1), kept.sum(axis=-1))
+
+
+def _correlation(r: Floats, m: Floats) -> Floats:
+    a, b = _centred(r), _centred(m)
+    product = np.einsum("...i,...i->...", a, b)
+    return np.clip(ratio(product / r.shape[-1], _rms(a) * _rms(b)), -1.0, 1.0)
 
 
 def _difference(r: Floats, m: Floats) -> Floats:

@@ -13,7 +13,6 @@ from math import cos, pi, sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize_scalar
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -195,6 +194,8 @@ def von_mises(stresses: Floats) -> Floats:
 @cache
 def _largest(kind: str, poisson_ratio: float) -> tuple[float, float]:
     """Maximum stress under the middle of a strip over p_0, and its depth over a."""
+    from scipy.optimize import minimize_scalar
+
     unit = LineContact(1.0, 1.0, 1.0)
     measure = shear_stress if kind == "shear" else von_mises
 

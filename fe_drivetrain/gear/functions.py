@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import acos, atan, isfinite, pi, tan
 
 import numpy as np
-from scipy.optimize import brentq
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -45,6 +44,8 @@ def inverse_involute(value: float) -> float:
     InputError
         If the value is negative: no profile has it.
     """
+    from scipy.optimize import brentq
+
     if not (isfinite(value) and value >= 0.0):
         raise InputError(
             f"an involute function of {value:g}: it is zero or positive; give less negative "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from fe_drivetrain.report.pictures import NoPictureError, picture_of_model
+from fe_drivetrain.report.pictures import NoPictureError, Picture, picture_of_model
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.report.suite.run import Run
@@ -26,21 +26,24 @@ def show_check(run: Run, page: Page, result: CheckResult) -> None:
         What was found.
     """
     page.section("Drivetrain")
+    chart = None
     if result.model is not None:
-        _picture(run, page, result.model)
+        drawn = _begin_picture(run, result.model)
+        chart = result.chart()
+        _picture(run, page, result.model, drawn)
     if result.turning is not None:
         page.add(drivetrain_layout(LAYOUT, result.turning.machine))
         if result.turning.machine.stages:
             page.hero(LAYOUT)
     describe(page, result.described)
-    if result.model is None:
+    if result.model is None or chart is None:
         return
     page.section("Cost")
     page.table(
         "What each level costs: unknowns of its largest system, time, memory",
         result.tables["levels"],
     )
-    page.add(result.chart())
+    page.add(chart)
     page.text(
         "Predicted times are those of the solver, fitted on two cores. Times of meshing and "
         "assembly are not in them: they stand below, and the next time a mesh comes from the "
@@ -56,24 +59,22 @@ def show_check(run: Run, page: Page, result: CheckResult) -> None:
     )
 
 
-def _picture(run: Run, page: Page, model: Model) -> None:
-    """Draw the model; where nothing can be drawn, say why.
-
-    Parameters
-    ----------
-    run : Run
-        Its folder takes the picture.
-    page : Page
-        Shows it.
-    model : Model
-        The model.
-    """
+def _begin_picture(run: Run, model: Model) -> Picture | NoPictureError:
+    """Begin to draw the model, beside what comes next; why not, where nothing can be drawn."""
     with run.step("picture"):
         try:
-            picture_of_model(model, run.folder / "model.png")
+            return picture_of_model(model, run.folder / "model.png")
         except NoPictureError as reason:
-            page.text(f"No picture: {reason}")
-            return
+            return reason
+
+
+def _picture(run: Run, page: Page, model: Model, drawn: Picture | NoPictureError) -> None:
+    """Show the model."""
+    if isinstance(drawn, NoPictureError):
+        page.text(f"No picture: {drawn}")
+        return
+    with run.step("picture"):
+        drawn.wait()
     caption = f"{model.scene.title}: parts, loads and supports"
     page.image(caption, "model.png")
     page.hero(caption)

@@ -18,8 +18,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid, trapezoid
-from scipy.interpolate import CubicSpline
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
@@ -153,6 +151,8 @@ def shaken(of: Running, history: BaseHistory, slip: float) -> Operation:
     slip : float
         Slip of the generator at rated torque.
     """
+    from scipy.integrate import cumulative_trapezoid, trapezoid
+
     bodies = assembly(of.machine, of.level, flexible=of.flexible).bodies
     time, a = history.time, history.accelerations
     moved = a.any(axis=0)
@@ -177,6 +177,8 @@ def _rotor_speed(of: Running, history: DriveHistory) -> Floats:
 
 def _at_hub(of: Running, history: DriveHistory, speed: Floats) -> Loads:
     """Loads of the file on the rotor, with what speeds its inertia up."""
+    from scipy.interpolate import CubicSpline
+
     wrench = history.loads.copy()
     rate = np.asarray(CubicSpline(history.time, speed)(history.time, 1))
     wrench[:, 3] += of.machine.rotor.inertia * rate

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
-from scipy.optimize import brentq
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -266,6 +265,7 @@ def _where_met(
     turning: Callable[[float], Floats],
 ) -> float:
     """Frequency of a mode [Hz] where an excitation meets it, else at the end that is nearer."""
+    from scipy.optimize import brentq
 
     def apart(speed: float) -> float:
         return excitation.frequency(speed) - float(turning(speed)[mode])

@@ -22,6 +22,7 @@ from .number_text import formatted as formatted
 from .page import write_page as write_page
 from .pictures import NoPictureError as NoPictureError
 from .pictures import can_draw as can_draw
+from .pictures import drawing_ready as drawing_ready
 from .pictures import gear_pair as gear_pair
 from .pictures import picture_of_deformation as picture_of_deformation
 from .pictures import picture_of_displacements as picture_of_displacements
@@ -49,7 +50,9 @@ from .results import results_below as results_below
 from .results import verdict_sentence as verdict_sentence
 from .roller_chart import roller_chart as roller_chart
 from .solid_view import Parts as Parts
-from .solid_view import deformed_shape as deformed_shape
+from .solid_view import begin_pictures as begin_pictures
+from .solid_view import deformed_view as deformed_view
 from .solid_view import model_pictures as model_pictures
+from .solid_view import no_picture as no_picture
 from .solid_view import solid_or_picture as solid_or_picture
 from .solid_view import write_solid_view as write_solid_view

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
 
 from fe_drivetrain.common.arrays import Floats, rounded
 from fe_drivetrain.report.charts import trace
@@ -39,6 +38,8 @@ def map_traces(x: Floats, y: Floats, percent: Floats, falls_as: float = 1.0) -> 
     traces : list
         For a chart.
     """
+    from scipy.interpolate import RectBivariateSpline
+
     fine_x, fine_y = np.geomspace(x[0], x[-1], 41), np.linspace(y[0], y[-1], 31)
     spline = RectBivariateSpline(
         y, np.log(x), percent * x**falls_as, kx=min(3, len(y) - 1), ky=min(3, len(x) - 1)

@@ -22,8 +22,8 @@ from fe_drivetrain.elasticity.mesh.facets import outside
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.elasticity.operator.stress import nodal_stresses, von_mises
 from fe_drivetrain.report.pictures.deformation import exaggeration, picture_of_deformation
+from fe_drivetrain.report.pictures.drawing_process import NoPictureError, Picture
 from fe_drivetrain.report.pictures.model import picture_of_model
-from fe_drivetrain.report.pictures.off_screen import NoPictureError
 from fe_drivetrain.report.results import Image, Solid, Text
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ SHOWN_LOADS = {
 }
 """At the hub, for comparison with the load that a page is about."""
 _MEGA = 1e6
+_DEFORMED = "deformed.png"
 
 # flat pieces of a facet with so many nodes, with its mid-side nodes and without
 _FINE = {
@@ -75,10 +76,37 @@ class Parts:
     __repr__ = short_repr
 
 
-def deformed_shape(
-    model: Model, response: Response, load_factors: Floats, folder: Path, what: str
-) -> Solid | Image:
-    """Draw a deformed model, and write it for the browser.
+@dataclass(frozen=True, eq=False)
+class PicturesBegun:
+    """Pictures of a model in the making, beside other work.
+
+    Attributes
+    ----------
+    title : str
+        Of the scene.
+    model, deformed : Picture
+        The two.
+    factor : float
+        Times which displacements are drawn.
+    """
+
+    title: str
+    model: Picture
+    deformed: Picture
+    factor: float
+
+    def items(self, shape: Solid | Image) -> Sequence[Image | Solid | Text]:
+        """Both for a page, when they are there; the second as `deformed_view` has it."""
+        self.model.wait()
+        self.deformed.wait()
+        caption = f"{self.title}: parts, loads and supports"
+        return [Image(caption=caption, file="model.png"), shape]
+
+
+def begin_pictures(
+    model: Model, response: Response, load_factors: Floats, folder: Path
+) -> PicturesBegun:
+    """Begin to draw a model and its deformed shape.
 
     Parameters
     ----------
@@ -87,22 +115,44 @@ def deformed_shape(
     load_factors : Floats
         (10,) multiples of the loads of `fe_drivetrain.shafts.response.LOADS`.
     folder : Path
-        Takes deformed.png and deformed.3d.json.
-    what : str
-        The loads in words.
-
-    Returns
-    -------
-    item : Solid or Image
-        For the page; the picture alone where the surface is too fine for a browser.
+        Takes model.png and deformed.png.
 
     Raises
     ------
     NoPictureError
         This machine cannot draw.
     """
-    picture = "deformed.png"
-    factor = picture_of_deformation(model, response, load_factors, folder / picture)
+    of_model = picture_of_model(model, folder / "model.png")
+    factor, deformed = picture_of_deformation(model, response, load_factors, folder / _DEFORMED)
+    return PicturesBegun(model.scene.title, of_model, deformed, factor)
+
+
+def deformed_view(
+    model: Model,
+    response: Response,
+    load_factors: Floats,
+    folder: Path,
+    what: str,
+    factor: float,
+) -> Solid | Image:
+    """Write a deformed model for the browser, beside its picture.
+
+    Parameters
+    ----------
+    model, response, load_factors : Model, Response, Floats
+        See `begin_pictures`.
+    folder : Path
+        Takes deformed.3d.json.
+    what : str
+        The loads in words.
+    factor : float
+        Times which displacements are drawn in the picture.
+
+    Returns
+    -------
+    item : Solid or Image
+        For the page; the picture alone where the surface is too fine for a browser.
+    """
     mesh, scene = model.mesh, model.scene
     lame = {part: scene.material_of(part).lame for part in mesh.part_names}
     fields = {what: response.displacements @ np.asarray(load_factors, dtype=np.float64)}
@@ -110,7 +160,7 @@ def deformed_shape(
         column = FORCES.index(component)
         fields[f"{name} at the hub"] = _MEGA * response.displacements[..., column]
     caption = f"Deformed shape, displacements times {factor:,.0f}, under {what}"
-    return solid_or_picture(caption, mesh, fields, lame, folder, picture)
+    return solid_or_picture(caption, mesh, fields, lame, folder, _DEFORMED)
 
 
 def model_pictures(
@@ -135,12 +185,16 @@ def model_pictures(
         For the page.
     """
     try:
-        picture_of_model(model, folder / "model.png")
-        shape = deformed_shape(model, response, load_factors, folder, what)
+        begun = begin_pictures(model, response, load_factors, folder)
     except NoPictureError as reason:
-        return [Text(text=f"No picture: {reason}")]
-    caption = f"{model.scene.title}: parts, loads and supports"
-    return [Image(caption=caption, file="model.png"), shape]
+        return [no_picture(reason)]
+    shape = deformed_view(model, response, load_factors, folder, what, begun.factor)
+    return begun.items(shape)
+
+
+def no_picture(reason: NoPictureError) -> Text:
+    """What a page has in the place of a picture."""
+    return Text(text=f"No picture: {reason}")
 
 
 def solid_or_picture(

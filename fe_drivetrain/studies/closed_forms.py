@@ -32,6 +32,8 @@ SPRUNG = "torsional-spring beam, {}"
 """Name of a beam on torsional springs, with the source of its K_R."""
 SIXBYSIX = "beam on the 6x6"
 
+_KEPT = 6  # models whose forces over all histories are kept: a million load steps are 8 MB
+
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
@@ -213,10 +215,64 @@ def closed_form_errors(
     solid = LinearModel.of_fe(scene, response)
     seconds = np.array([len(h) * h.step for h in loads.given.histories])
     histories = [history.values for history in loads.each]
-    return {
-        name: force_errors(solid, beam, histories, seconds / seconds.sum())
-        for name, beam in models.items()
-    }
+    over = ForceComparison(histories, seconds / seconds.sum())
+    return {name: over.errors(solid, beam) for name, beam in models.items()}
+
+
+class ForceComparison:
+    """Errors of beams over load histories, each pair of models once.
+
+    Parameters
+    ----------
+    histories : sequence of ndarray, (n, 6)
+        Hub loads [N, N m].
+    share : ndarray, (m,), optional
+        What each history counts, their sum 1; all the same where not given.
+    """
+
+    def __init__(self, histories: Sequence[Floats], share: Floats | None = None) -> None:
+        self.histories = histories
+        count = len(histories)
+        self._weights = np.full(count, 1.0 / count) if share is None else share
+        self._forces: dict[tuple[bytes, ...], list[Floats]] = {}  # of the models used last
+        self._errors: dict[tuple[bytes, ...], ForceErrors] = {}
+
+    def errors(self, solid: LinearModel, beam: LinearModel) -> ForceErrors:
+        """Errors of a beam's resultant radial force.
+
+        Parameters
+        ----------
+        solid, beam : LinearModel
+            The reference and the model.
+        """
+        key = (*_key(solid), *_key(beam))
+        if key not in self._errors:
+            found = []
+            for both in zip(self._radial(solid), self._radial(beam), strict=True):
+                errors = statistics.errors_at_once(*both)
+                found.append(
+                    [
+                        float(errors.mean_percentage_error),
+                        100.0 * float(errors.relative_error),
+                        float(errors.correlation),
+                        100.0 * float(errors.excluded_share),
+                    ]
+                )
+            self._errors[key] = ForceErrors(*(self._weights @ np.array(found)).tolist())
+        return self._errors[key]
+
+    def _radial(self, model: LinearModel) -> list[Floats]:
+        """(n,) resultant radial force in each history [N]; those of a few models are kept."""
+        key = _key(model)
+        forces = self._forces.pop(key, None) or [model.radial(h) for h in self.histories]
+        self._forces[key] = forces  # the last, now
+        for old in list(self._forces)[:-_KEPT]:
+            del self._forces[old]
+        return forces
+
+
+def _key(model: LinearModel) -> tuple[bytes, bytes]:
+    return model.matrix.tobytes(), model.constant.tobytes()
 
 
 def force_errors(
@@ -225,7 +281,7 @@ def force_errors(
     histories: Sequence[Floats],
     share: Floats | None = None,
 ) -> ForceErrors:
-    """Errors of a beam's resultant radial force.
+    """Errors of a beam's resultant radial force; several beams by one `ForceComparison`.
 
     Parameters
     ----------
@@ -236,19 +292,7 @@ def force_errors(
     share : ndarray, (m,), optional
         What each history counts, their sum 1; all the same where not given.
     """
-    found = []
-    for history in histories:
-        both = solid.radial(history), beam.radial(history)
-        found.append(
-            [
-                float(statistics.mean_percentage_error(*both)),
-                100.0 * float(statistics.relative_error(*both)),
-                float(statistics.correlation(*both)),
-                100.0 * float(statistics.excluded_share(both[0])),
-            ]
-        )
-    weights = np.full(len(found), 1.0 / len(found)) if share is None else share
-    return ForceErrors(*(weights @ np.array(found)).tolist())
+    return ForceComparison(histories, share).errors(solid, beam)
 
 
 def closed_form_rows(found: Mapping[str, ForceErrors]) -> list[Record]:

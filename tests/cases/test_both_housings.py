@@ -12,7 +12,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.reading import library_scene
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
-from fe_drivetrain.turbine_loads.hub_loads.surrogate import Condition, HubLoadSet
+from fe_drivetrain.studies.closed_forms import ForceComparison
 
 AS_PRINTED = Errors((22.74, 0.7781), (1.0, 0.9999), (1.61, 0.9996), 1.3, {"thrust": 0.1})
 WORSE = Errors((5.0, 0.95), (2.5, 0.9999), (3.0, 0.9991), 1.02, {"thrust": 0.2})
@@ -70,8 +70,7 @@ def test_errors_are_those_of_beams_against_the_solids(tmp_path: Path) -> None:
     phase = np.linspace(0.0, 6.0, 50)
     loads[0, :, 2] = -3.8e5 + 3e4 * np.sin(phase)
     loads[0, :, 4] = 3e5 * np.cos(phase)
-    hub = HubLoadSet((Condition(12.0, "low", 0.2, 1),), np.arange(50.0), loads)
-    found = calibrated.errors_of(hub, housed)
+    found = calibrated.errors_of(loads, ForceComparison(list(loads)), housed)
     assert found.pinned_band is None  # of one mesh
     assert 0.0 < found.sprung[0] < found.pinned[0]
     # neither thrust nor torque is there

@@ -14,7 +14,7 @@ from fe_drivetrain.cases.main_bearing import surrogate
 from fe_drivetrain.command_line.app import main
 from fe_drivetrain.common.typeset import typeset
 from fe_drivetrain.export.formats.stiffness_file import read_stiffness_json
-from fe_drivetrain.report.pictures.off_screen import can_draw
+from fe_drivetrain.report.pictures.drawing_process import can_draw
 from fe_drivetrain.report.results import read_results
 from fe_drivetrain.report.suite.case import all_cases, find_cases
 from fe_drivetrain.report.suite.findings import OF_NONE

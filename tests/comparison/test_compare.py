@@ -243,6 +243,19 @@ def test_numpy_agrees_on_correlation(signal):
     assert cp.correlation(signal, model) == pytest.approx(expected, rel=1e-12)
 
 
+def test_statistics_at_once_are_those_one_by_one_to_the_last_digit(signal):
+    model = 1.1 * signal[::-1] - 0.7
+    at_once = cp.errors_at_once(signal - 3.0, model, 0.2)
+    pair = signal - 3.0, model
+    assert (at_once.excluded_share > 0.0).all()
+    np.testing.assert_array_equal(
+        at_once.mean_percentage_error, cp.mean_percentage_error(*pair, 0.2)
+    )
+    np.testing.assert_array_equal(at_once.relative_error, cp.relative_error(*pair))
+    np.testing.assert_array_equal(at_once.correlation, cp.correlation(*pair))
+    np.testing.assert_array_equal(at_once.excluded_share, cp.excluded_share(pair[0], 0.2))
+
+
 def test_correlation_survives_a_large_mean():
     # A mean a hundred million times the variation: raw sums of squares would lose it all.
     t = np.linspace(0.0, 1.0, 1000)

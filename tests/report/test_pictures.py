@@ -1,8 +1,13 @@
 """What a picture shows is where the model says it is."""
 
 import math
+import subprocess
 import sys
+from collections.abc import Iterator
+from multiprocessing.resource_tracker import ensure_running
+from multiprocessing.spawn import get_executable, set_executable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,14 +18,15 @@ from PIL import Image
 from fe_drivetrain.common.typeset import with_prefix
 from fe_drivetrain.elasticity.mesh.measures import area
 from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
+from fe_drivetrain.report.pictures import drawing_process
 from fe_drivetrain.report.pictures.deformation import (
     exaggeration,
     picture_of_deformation,
     picture_of_displacements,
 )
+from fe_drivetrain.report.pictures.drawing_process import NoPictureError, can_draw, drawn
 from fe_drivetrain.report.pictures.model import PARTS, picture_of_model
-from fe_drivetrain.report.pictures.off_screen import NoPictureError, can_draw
-from fe_drivetrain.report.pictures.sheet import drawing, round_step
+from fe_drivetrain.report.pictures.sheet import Plan, Sheet, drawing, round_step
 from fe_drivetrain.report.pictures.surfaces import curved_surface, cut_open, part_solid
 from fe_drivetrain.report.pictures.view import ALONG_THE_SHAFT, SIZE, STRIP, View
 from fe_drivetrain.shafts.response.model import Model
@@ -33,6 +39,10 @@ coordinates = st.tuples(*[st.floats(-20, 20)] * 3)
 
 def pixels(path: Path) -> np.ndarray:
     return np.asarray(Image.open(path).convert("RGB")).astype(float)
+
+
+def solid_of(mesh: Mesh, part: str) -> Any:
+    return part_solid(mesh.cells[mesh.part_cells(part)], mesh.points)
 
 
 def middle_of(shown: np.ndarray) -> np.ndarray:
@@ -180,7 +190,7 @@ def test_a_curved_surface_is_closed_and_carries_vectors_exactly(bonded_model: Mo
 def test_cutting_a_ring_open_takes_a_quarter_and_closes_the_cut(bonded_model: Model) -> None:
     mesh, bearing = bonded_model.mesh, bonded_model.scene.bearing_units[0].bearing
     surface = curved_surface(boundary(mesh, bearing.name), mesh.points)
-    cut, edges = cut_open(surface, part_solid(mesh, bearing.name))
+    cut, edges = cut_open(surface, solid_of(mesh, bearing.name))
     inner, outer = 0.2, bearing.raceway_diameter / 2
     section = bearing.width * (outer - inner)
     whole = 2 * np.pi * (inner + outer) * bearing.width + 2 * np.pi * (outer**2 - inner**2)
@@ -194,7 +204,7 @@ def test_cutting_a_ring_open_takes_a_quarter_and_closes_the_cut(bonded_model: Mo
 def test_the_section_of_a_solid_follows_its_curved_elements(bonded_model: Model) -> None:
     mesh, shaft = bonded_model.mesh, bonded_model.scene.shaft
     radius = shaft.sections[0].outer_diameter / 2
-    section = part_solid(mesh, "shaft").slice("x", origin=(shaft.front + 0.37, 0.0, 0.0))
+    section = solid_of(mesh, "shaft").slice("x", origin=(shaft.front + 0.37, 0.0, 0.0))
     corners = 12  # of the mesh around the shaft; with mid-side nodes there are twice as many
     polygon = 0.5 * radius**2 * 2 * corners * np.sin(np.pi / corners)
     assert polygon < 0.99 * np.pi * radius**2
@@ -224,7 +234,7 @@ def parts_seen(path: Path) -> set[str]:
 @needs_opengl
 @pytest.mark.usefixtures("without_display")
 def test_the_model_is_drawn_with_all_its_parts(bonded_model: Model, tmp_path: Path) -> None:
-    picture_of_model(bonded_model, tmp_path / "model.png")
+    picture_of_model(bonded_model, tmp_path / "model.png").wait()
     assert pixels(tmp_path / "model.png").shape == (SIZE[1], SIZE[0], 3)
     assert parts_seen(tmp_path / "model.png") == {"shaft", "bearing", "housing"}
 
@@ -236,10 +246,13 @@ def test_the_deformation_is_drawn_and_its_factor_follows_the_load(
 ) -> None:
     loads = np.zeros(10)
     loads[2], loads[9] = -5e5, 392280.0
-    first = picture_of_deformation(bonded_model, bonded_response, loads, tmp_path / "1.png", "down")
-    tenfold = picture_of_deformation(
+    first, _ = picture_of_deformation(
+        bonded_model, bonded_response, loads, tmp_path / "1.png", "down"
+    )
+    tenfold, drawn = picture_of_deformation(
         bonded_model, bonded_response, 10 * loads, tmp_path / "10.png", "down"
     )
+    drawn.wait()  # pictures are drawn one after the other
     assert tenfold == pytest.approx(first / 10)
     # the same shape: only what is written about it differs
     difference = np.abs(pixels(tmp_path / "1.png") - pixels(tmp_path / "10.png")).max(axis=2)
@@ -252,7 +265,9 @@ def test_no_load_is_no_deformation(
     bonded_model: Model, bonded_response: Response, tmp_path: Path
 ) -> None:
     path = tmp_path / "still.png"
-    assert picture_of_deformation(bonded_model, bonded_response, np.zeros(10), path) == 1
+    factor, drawn = picture_of_deformation(bonded_model, bonded_response, np.zeros(10), path)
+    drawn.wait()
+    assert factor == 1
     assert path.exists()
 
 
@@ -264,7 +279,8 @@ def test_a_component_is_drawn_in_the_colours_of_its_displacements(
     u = np.zeros_like(spherical_mesh.points)
     u[:, 2] = 1e-3 * (spherical_mesh.points[:, 0] - spherical_mesh.points[:, 0].min())
     length = np.ptp(spherical_mesh.points, axis=0).max()
-    factor = picture_of_displacements(spherical_mesh, u, path)
+    factor, drawn = picture_of_displacements(spherical_mesh, u, path)
+    drawn.wait()
     assert factor == exaggeration(1e-3 * length, length) == 80
     image = pixels(path)
     assert image.shape == (SIZE[1], SIZE[0], 3)
@@ -283,7 +299,8 @@ def test_a_component_that_moves_as_a_whole_is_drawn(
     shift: float, spherical_mesh: Mesh, tmp_path: Path
 ) -> None:
     u = np.full_like(spherical_mesh.points, shift)
-    factor = picture_of_displacements(spherical_mesh, u, tmp_path / "component.png")
+    factor, drawn = picture_of_displacements(spherical_mesh, u, tmp_path / "component.png")
+    drawn.wait()
     assert (factor == 1) == (shift == 0)
     assert (tmp_path / "component.png").exists()
 
@@ -296,13 +313,55 @@ def test_a_displacement_that_is_not_finite_is_refused(
         picture_of_deformation(bonded_model, bonded_response, loads, tmp_path / "x.png")
 
 
+@needs_opengl
+def test_vtk_is_loaded_by_the_process_that_draws_and_never_by_its_parent(tmp_path: Path) -> None:
+    script = tmp_path / "draw.py"
+    script.write_text(
+        "import sys\n"
+        "from pathlib import Path\n"
+        "from fe_drivetrain.drivetrain_file import library_scene\n"
+        "from fe_drivetrain.report import drawing_ready, picture_of_model\n"
+        "from fe_drivetrain.shafts.response import build_model, mesh_scene\n"
+        "from fe_drivetrain.studies.scene_description import quick_scene\n"
+        "with drawing_ready():\n"
+        "    scene = quick_scene(library_scene('main_bearing_bonded'))\n"
+        "    picture_of_model(build_model(scene, mesh_scene(scene)), Path('model.png')).wait()\n"
+        "assert not {'pyvista', 'vtkmodules', 'matplotlib'} & set(sys.modules)\n"
+    )
+    done = subprocess.run([sys.executable, script], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert parts_seen(tmp_path / "model.png") == {"shaft", "bearing", "housing"}
+
+
+@needs_opengl
+def test_what_goes_wrong_in_drawing_is_raised_when_the_picture_is_asked_for(
+    tmp_path: Path,
+) -> None:
+    view = View.fitting(np.eye(3), ALONG_THE_SHAFT, top=0)
+    plan = Plan(view)
+    plan.add(Sheet.area, "no corners", "#000000")
+    path = tmp_path / "none.png"
+    with pytest.raises(TypeError):
+        drawn(plan, path).wait()
+    assert not path.exists()
+    drawn(Plan(view), path).wait()  # the process has outlived it
+    assert path.exists()
+
+
 @pytest.fixture
-def crashing_renderer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def crashing_renderer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """An interpreter that dies as VTK does where there is no OpenGL at all."""
     interpreter = tmp_path / "python"
     interpreter.write_text("#!/bin/sh\nkill -SEGV $$\n")
     interpreter.chmod(0o755)
-    monkeypatch.setattr(sys, "executable", str(interpreter))
+    ensure_running()  # multiprocessing's own process does not draw
+    before = get_executable()
+    set_executable(str(interpreter))
+    with monkeypatch.context() as patch:
+        patch.setattr(drawing_process, "_process", None)
+        yield
+        drawing_process._process.end()
+    set_executable(before)
 
 
 @pytest.mark.usefixtures("crashing_renderer")
@@ -319,7 +378,7 @@ def test_a_machine_that_cannot_draw_says_so(bonded_model: Model, tmp_path: Path)
 
 def test_the_mesh_is_left_as_it_was(spherical_mesh: Mesh) -> None:
     before = spherical_mesh.points.copy()
-    solid = part_solid(spherical_mesh, "shaft")
+    solid = solid_of(spherical_mesh, "shaft")
     solid.points += 1.0
     surface = curved_surface(boundary(spherical_mesh), spherical_mesh.points)
     surface.points += 1.0

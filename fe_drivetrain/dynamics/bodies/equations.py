@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.errors import InputError
@@ -308,6 +307,8 @@ def wave_table(values: ArrayLike) -> Floats:
     wave : Floats
         (p, 4) coefficients of 1, s, s^2, s^3 in each interval, s in periods.
     """
+    from scipy.interpolate import CubicSpline
+
     at = np.asarray(values, dtype=np.float64)
     spline = CubicSpline(np.linspace(0.0, 1.0, len(at) + 1), [*at, at[0]], bc_type="periodic")
     return np.ascontiguousarray(spline.c[::-1].T)

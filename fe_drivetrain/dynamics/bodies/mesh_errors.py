@@ -10,7 +10,6 @@ from math import cos
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicSpline
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -46,6 +45,8 @@ class MeshError:
     @property
     def table(self) -> Floats:
         """(p, 4) as `wave_table` has it, on a common number of intervals."""
+        from scipy.interpolate import CubicSpline
+
         at = np.asarray(self.values, dtype=np.float64)
         if len(at) != INTERVALS:
             ends = np.linspace(0.0, 1.0, len(at) + 1)

@@ -7,7 +7,6 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg
-from scipy.optimize import linear_sum_assignment
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.components import MOTIONS
@@ -266,6 +265,8 @@ def likest_shapes(mass: Floats, shapes: Floats | Complex, others: Floats | Compl
     ndarray, (k,)
         -1 where there is none left.
     """
+    from scipy.optimize import linear_sum_assignment
+
     sizes = [np.einsum("ij,ij->j", of.conj(), mass @ of).real for of in (shapes, others)]
     likeness = np.abs(shapes.conj().T @ (mass @ others)) ** 2 / np.outer(*sizes)
     found = np.full(shapes.shape[1], -1)

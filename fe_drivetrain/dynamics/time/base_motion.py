@@ -16,8 +16,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.integrate import cumulative_trapezoid
-from scipy.interpolate import CubicSpline
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import MOTIONS
@@ -73,6 +71,8 @@ class BaseMotion:
 
     def _velocities(self) -> tuple[Floats, Floats]:
         """Times (f,), finer than samples, and velocities (f, b) there."""
+        from scipy.integrate import cumulative_trapezoid
+
         steps, a = np.diff(self.times)[:, None], self.accelerations
         v = self.velocity + cumulative_trapezoid(a, self.times, axis=0, initial=0.0)
         part = (np.arange(FINER) / FINER)[:, None, None]
@@ -110,6 +110,8 @@ def base_motion(motions: ArrayLike, times: ArrayLike, displacements: ArrayLike) 
     InputError
         There are too few samples, times do not ascend, or numbers do not fit each other.
     """
+    from scipy.interpolate import CubicSpline
+
     S, t, g = _samples(motions, times, displacements)
     path = CubicSpline(t, g)
     return BaseMotion(S, t, path(t, 2), path(t[0], 1))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from fe_drivetrain.common.arrays import Ints
 from fe_drivetrain.common.errors import InputError
@@ -93,6 +92,7 @@ class Pace:
 
     def event(self, section: Section, state: State, h: float) -> tuple[Piece, int]:
         """The step that ends at an event within a length, and whose event it is."""
+        from scipy.optimize import brentq
 
         def after(length: float) -> Piece:
             stepper = prepared(section.mechanism, length, self.scheme, section.held)

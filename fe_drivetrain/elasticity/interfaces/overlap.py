@@ -7,7 +7,6 @@ The facets of one face are cut by the outlines of the other's in the planes of t
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
@@ -139,6 +138,8 @@ def near_pairs(
     centres: Floats, radii: Floats, others: Floats, other_radii: Floats
 ) -> tuple[Ints, Ints]:
     """Pairs of circles that can meet, ascending in the first."""
+    from scipy.spatial import cKDTree
+
     reach = _NEAR * (radii + other_radii.max())
     lists = cKDTree(others).query_ball_point(centres, reach)
     first = np.repeat(np.arange(len(centres)), [len(found) for found in lists])

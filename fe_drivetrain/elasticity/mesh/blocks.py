@@ -10,7 +10,6 @@ from itertools import permutations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial import cKDTree
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
@@ -118,6 +117,8 @@ def joined(block: Block) -> Block:
 
     Facets that have become inner ones still stand under the names that they had.
     """
+    from scipy.spatial import cKDTree
+
     tolerance = _SAME_PLACE * float(np.ptp(block.points, axis=0).max())
     pairs = cKDTree(block.points).query_pairs(tolerance, output_type="ndarray")
     twin = np.arange(len(block.points))

@@ -3,10 +3,12 @@
 Compiled by numba at the first call (seconds), then kept in its cache on disk.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit, prange
+from numba import get_num_threads, njit
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
@@ -59,12 +61,31 @@ def sparsity(cells: Index, n_nodes: int) -> tuple[Index, Index, Index]:
     where, indptr = np.empty(n_cells * k, np.int64), np.zeros(n_nodes + 1, np.int32)
     _find_cells(cells, start, fill, where)
     markers = np.full((_PIECES, n_nodes), -1, np.int32)
-    _count_pairs(cells, start, where, markers, indptr)
+    in_pieces(_PIECES, _count_pairs, cells, start, where, markers, indptr)
     np.cumsum(indptr, out=indptr)
     indices, slots = np.empty(indptr[-1], np.int32), np.empty((n_cells, k, k), np.int32)
     markers[:] = -1
-    _place_pairs(cells, start, where, markers, indptr, indices, slots)
+    in_pieces(_PIECES, _place_pairs, cells, start, where, markers, indptr, indices, slots)
     return indptr, indices, slots
+
+
+def in_pieces(count: int, loop: Callable[..., None], *arrays: Any) -> None:
+    """Call a loop that lets go of Python's lock for each piece of the rows, in as many threads.
+
+    A loop that numba shares out among threads takes twice as long to compile.
+
+    Parameters
+    ----------
+    count : int
+        Pieces.
+    loop : callable
+        Takes the number of the piece, and the arrays.
+    *arrays : Any
+        Of which each piece writes its own rows.
+    """
+    with ThreadPoolExecutor(get_num_threads()) as pool:
+        for piece in [pool.submit(loop, piece, *arrays) for piece in range(count)]:
+            piece.result()
 
 
 @njit(cache=True)
@@ -86,28 +107,33 @@ def _find_cells(
             fill[i] += 1
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, nogil=True)
 def _count_pairs(
-    cells: Index, start: NDArray[np.int64], where: NDArray[np.int64], markers: Index, counts: Index
+    piece: int,
+    cells: Index,
+    start: NDArray[np.int64],
+    where: NDArray[np.int64],
+    markers: Index,
+    counts: Index,
 ) -> None:
     """Number of nodes that share a cell with node i, in ``counts[i + 1]``."""
     k, n = cells.shape[1], len(start) - 1
-    for piece in prange(_PIECES):
-        seen = markers[piece]
-        for i in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
-            count = 0
-            for w in range(start[i], start[i + 1]):
-                c = where[w] // k
-                for b in range(k):
-                    j = cells[c, b]
-                    if seen[j] != i:
-                        seen[j] = i
-                        count += 1
-            counts[i + 1] = count
+    seen = markers[piece]
+    for i in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
+        count = 0
+        for w in range(start[i], start[i + 1]):
+            c = where[w] // k
+            for b in range(k):
+                j = cells[c, b]
+                if seen[j] != i:
+                    seen[j] = i
+                    count += 1
+        counts[i + 1] = count
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, nogil=True)
 def _place_pairs(
+    piece: int,
     cells: Index,
     start: NDArray[np.int64],
     where: NDArray[np.int64],
@@ -118,33 +144,32 @@ def _place_pairs(
 ) -> None:
     """Columns of the rows, and where each pair of a cell stands among them."""
     k, n = cells.shape[1], len(start) - 1
-    for piece in prange(_PIECES):
-        # where a node stands in the row; before this row's first place it stood in another one
-        place = markers[piece]
-        for i in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
-            first = end = indptr[i]
-            for w in range(start[i], start[i + 1]):
-                c = where[w] // k
-                for b in range(k):
-                    j = cells[c, b]
-                    if place[j] < first:
-                        place[j] = first
-                        indices[end] = j
-                        end += 1
-            # By insertion: rows are short, and NumPy's sort would take a second to compile.
-            for p in range(first, end):
-                j, q = indices[p], p
-                while q > first and indices[q - 1] > j:
-                    indices[q] = indices[q - 1]
-                    q -= 1
-                indices[q] = j
-            for p in range(first, end):
-                place[indices[p]] = p
-            for w in range(start[i], start[i + 1]):
-                c = where[w] // k
-                a = where[w] - c * k
-                for b in range(k):
-                    slots[c, a, b] = place[cells[c, b]]
+    # where a node stands in the row; before this row's first place it stood in another one
+    place = markers[piece]
+    for i in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
+        first = end = indptr[i]
+        for w in range(start[i], start[i + 1]):
+            c = where[w] // k
+            for b in range(k):
+                j = cells[c, b]
+                if place[j] < first:
+                    place[j] = first
+                    indices[end] = j
+                    end += 1
+        # By insertion: rows are short, and NumPy's sort would take a second to compile.
+        for p in range(first, end):
+            j, q = indices[p], p
+            while q > first and indices[q - 1] > j:
+                indices[q] = indices[q - 1]
+                q -= 1
+            indices[q] = j
+        for p in range(first, end):
+            place[indices[p]] = p
+        for w in range(start[i], start[i + 1]):
+            c = where[w] // k
+            a = where[w] - c * k
+            for b in range(k):
+                slots[c, a, b] = place[cells[c, b]]
 
 
 @njit(inline="always")

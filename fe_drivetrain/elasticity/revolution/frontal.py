@@ -93,8 +93,9 @@ def _sweep(
 ) -> tuple[Floats, Ints, Ints, Ints, Floats]:
     # one layout, so that it is compiled once
     grams, law, shares = (np.ascontiguousarray(a) for a in (grams, law, shares))
+    ids = np.ascontiguousarray(ids)
     found, K, dofs, sizes, gone, values = _swept(
-        grams, law, np.ascontiguousarray(ids), shares, kept, order, store
+        grams, law, ids, shares, kept, _users(ids, kept), order, store
     )
     if not found:
         raise InputError(
@@ -146,14 +147,20 @@ def _element_matrices(grams: Floats, law: Floats) -> Floats:
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
 def _swept(
-    grams: Floats, law: Floats, ids: Ints, shares: Floats, kept: int, order: Ints, store: bool
+    grams: Floats,
+    law: Floats,
+    ids: Ints,
+    shares: Floats,
+    kept: int,
+    users: Ints,
+    order: Ints,
+    store: bool,
 ) -> tuple[bool, Floats, Ints, Ints, Ints, Floats]:
     """Whether all could be eliminated, the stiffness of what is kept, and the `Factor` to store.
 
     Only the upper triangles of matrices are kept.
     """
     size = ids.shape[1]
-    users = _users(ids, kept)
     place = np.full(len(users), -1)
     K = np.empty((size, size))
     matrices = [np.empty((0, 0))]
@@ -201,18 +208,12 @@ def _swept(
     return True, result, _joined(numbers), sizes, eliminated, _joined(rows)
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
 def _users(ids: Ints, kept: int) -> Ints:
     """How many elements each degree of freedom belongs to; more than there are, of the kept."""
-    ne = len(ids)
-    users = np.zeros(ids.max() + 1, dtype=np.int64)
-    last = np.full(len(users), -1)
-    for e in range(ne):
-        for f in ids[e]:
-            if f >= 0 and last[f] != e:
-                last[f] = e
-                users[f] += 1
-    users[:kept] = ne + 1
+    own = np.sort(ids, axis=1)
+    is_first = np.diff(own, axis=1, prepend=-1) != 0  # of each element; none is held
+    users = np.bincount(own[is_first & (own >= 0)], minlength=int(ids.max()) + 1)
+    users[:kept] = len(ids) + 1
     return users
 
 

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import linalg, special
+from scipy import linalg
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
@@ -128,6 +128,8 @@ class InfluenceFunctions:
 
     def _beyond(self, N: int) -> float:
         """Sum of sin^2(n a) / (n a)^2 / n over n > N."""
+        from scipy import special
+
         a = self.half_angle
         n = np.arange(N + 1, max(100 * N, math.ceil(100 / a)) + 1)
         # sin^2 is half on average beyond

@@ -8,11 +8,12 @@ a number times the identity, and two or fewer a node.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import NDArray
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.elasticity.operator.element_loops import in_pieces
 from fe_drivetrain.elasticity.operator.kernels import AHEAD, Index, pattern_of
 from fe_drivetrain.elasticity.operator.vectors import LANES, fetch, load, plus, store
 
@@ -43,11 +44,12 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
     patterns = back.pattern, _Pattern(K.indptr, K.indices), forwards.pattern
     # NumPy makes the array out here: in a compiled loop that takes longer to compile
     markers = np.full((_PIECES, n // 3), -1, dtype=np.int64)
-    _count(*patterns, pieces, markers, indptr[1:])
+    in_pieces(_PIECES, _count, *patterns, pieces, markers, indptr[1:])
     np.cumsum(indptr, out=indptr)
     markers[:] = -1
     indices, data = np.empty(indptr[-1], dtype=np.int32), np.zeros((indptr[-1], 3, 3))
-    _fill(
+    in_pieces(
+        *(_PIECES, _fill),
         *(back, _Rows(K.indptr, K.indices, K.data.ravel()), forwards),
         *(pieces, markers, _Rows(indptr, indices, data.ravel())),
     )
@@ -94,8 +96,9 @@ def _transfer(P: sparse.bsr_array) -> _Transfer:
     return _Transfer(*pattern_of(P), P.data, np.where(plain, first, np.nan))
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, nogil=True)
 def _count(
+    piece: int,
     R: _Pattern,
     K: _Pattern,
     P: _Pattern,
@@ -105,23 +108,23 @@ def _count(
 ) -> None:
     """Number of blocks in each coarse row of R K P."""
     (Rptr, Rind), (Kptr, Kind), (Pptr, Pind) = R, K, P
-    for piece in prange(len(pieces) - 1):
-        seen = markers[piece]
-        for a in range(pieces[piece], pieces[piece + 1]):
-            count = 0
-            for s in range(Rptr[a], Rptr[a + 1]):
-                i = Rind[s]
-                for p in range(Kptr[i], Kptr[i + 1]):
-                    j = Kind[p]
-                    for q in range(Pptr[j], Pptr[j + 1]):
-                        if seen[Pind[q]] != a:
-                            seen[Pind[q]] = a
-                            count += 1
-            counts[a] = count
+    seen = markers[piece]
+    for a in range(pieces[piece], pieces[piece + 1]):
+        count = 0
+        for s in range(Rptr[a], Rptr[a + 1]):
+            i = Rind[s]
+            for p in range(Kptr[i], Kptr[i + 1]):
+                j = Kind[p]
+                for q in range(Pptr[j], Pptr[j + 1]):
+                    if seen[Pind[q]] != a:
+                        seen[Pind[q]] = a
+                        count += 1
+        counts[a] = count
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True, nogil=True)
 def _fill(
+    piece: int,
     R: _Transfer,
     K: _Rows,
     P: _Transfer,
@@ -134,27 +137,26 @@ def _fill(
     Kptr, Kind, values = K
     Pptr, Pind, right, of = P
     indptr, indices, data = coarse
-    for piece in prange(len(pieces) - 1):
-        place = markers[piece]
-        for a in range(pieces[piece], pieces[piece + 1]):
-            first = end = np.int64(indptr[a])
-            for s in range(Rptr[a], Rptr[a + 1]):
-                i, weight = Rind[s], to[s]
-                for p in range(Kptr[i], Kptr[i + 1]):
-                    j = Kind[p]
-                    fetch(values, 9 * p + AHEAD // values.itemsize)
-                    for q in range(Pptr[j], Pptr[j + 1]):
-                        b = Pind[q]
-                        t = place[b]
-                        if t < first:
-                            t = place[b] = end
-                            indices[end] = b
-                            end += 1
-                        factor = weight * of[q]
-                        if factor == factor:
-                            _add(data, np.uint64(9 * t), factor, values, np.uint64(9 * p))
-                        else:
-                            _add_between(data, 9 * t, left[s], values, 9 * p, right[q])
+    place = markers[piece]
+    for a in range(pieces[piece], pieces[piece + 1]):
+        first = end = np.int64(indptr[a])
+        for s in range(Rptr[a], Rptr[a + 1]):
+            i, weight = Rind[s], to[s]
+            for p in range(Kptr[i], Kptr[i + 1]):
+                j = Kind[p]
+                fetch(values, 9 * p + AHEAD // values.itemsize)
+                for q in range(Pptr[j], Pptr[j + 1]):
+                    b = Pind[q]
+                    t = place[b]
+                    if t < first:
+                        t = place[b] = end
+                        indices[end] = b
+                        end += 1
+                    factor = weight * of[q]
+                    if factor == factor:
+                        _add(data, np.uint64(9 * t), factor, values, np.uint64(9 * p))
+                    else:
+                        _add_between(data, 9 * t, left[s], values, 9 * p, right[q])
 
 
 @njit(inline="always")

@@ -1,8 +1,10 @@
 from .deformation import picture_of_deformation as picture_of_deformation
 from .deformation import picture_of_displacements as picture_of_displacements
+from .drawing_process import NoPictureError as NoPictureError
+from .drawing_process import Picture as Picture
+from .drawing_process import can_draw as can_draw
+from .drawing_process import drawing_ready as drawing_ready
 from .model import picture_of_model as picture_of_model
-from .off_screen import NoPictureError as NoPictureError
-from .off_screen import can_draw as can_draw
 from .rollers import rolling_elements as rolling_elements
 from .sketch import shaft_with_rings as shaft_with_rings
 from .sketch import sketch as sketch

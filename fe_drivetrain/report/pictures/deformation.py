@@ -11,8 +11,9 @@ import numpy.typing as npt
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
-from fe_drivetrain.report.pictures.sheet import FAINT, INK, Sheet, drawing
-from fe_drivetrain.report.pictures.surfaces import curved_surface, sharp_edges
+from fe_drivetrain.report.pictures.bodies import add_ghost, add_shape, add_shape_with_elements
+from fe_drivetrain.report.pictures.drawing_process import Picture, drawn
+from fe_drivetrain.report.pictures.sheet import Plan, Sheet
 from fe_drivetrain.report.pictures.view import ALONG_THE_SHAFT, SIZE, STRIP, View
 
 if TYPE_CHECKING:
@@ -31,8 +32,10 @@ _TOWARDS_A_COMPONENT = (1.0, -0.75, -0.5)
 
 def picture_of_deformation(
     model: Model, response: Response, load_factors: npt.ArrayLike, path: Path, title: str = ""
-) -> float:
+) -> tuple[float, Picture]:
     """Draw the deformed shape, exaggerated and coloured by displacement, over the undeformed one.
+
+    It is drawn beside what follows: `Picture.wait` returns when the file is there.
 
     Parameters
     ----------
@@ -50,6 +53,8 @@ def picture_of_deformation(
     factor : float
         How many times larger the displacements are drawn than they are, for the caption. The
         largest is then about 8 % of the length of the shaft. 1 where nothing moves.
+    picture : Picture
+        The picture in the making.
 
     Raises
     ------
@@ -66,32 +71,30 @@ def picture_of_deformation(
     moved = mesh.points + factor * u
     seen = np.concatenate([mesh.points, moved])
     view = View.fitting(seen, ALONG_THE_SHAFT, top=90, bottom=STRIP + 50)
-    with drawing(path, view) as sheet:
-        for part in mesh.part_names:
-            facets, nodes = boundary(mesh, part), mesh.part_nodes(part)
-            if factor * size[nodes].max() * view.scale > _VISIBLE:
-                ghost = curved_surface(facets, mesh.points)
-                sheet.plotter.add_mesh(ghost, color="#9aa5b1", opacity=0.16)
-                sheet.plotter.add_mesh(sharp_edges(ghost), color=FAINT, line_width=2.0)
-            shape = curved_surface(facets, moved, u)
-            sheet.coloured(shape, (0.0, 1e3 * largest or 1.0))
-            sheet.plotter.add_mesh(sharp_edges(shape), color=INK, line_width=2.0)
-        sheet.text((40, SIZE[1] - 40), title, size=24, centred=False)
-        sheet.triad()
-        sheet.scale_bar()
-        if largest > 0:
-            _note_beside(sheet, moved[np.argmax(size)], f"largest: {1e3 * largest:.4g} mm", seen)
-        shape_rows = [
-            ("Shape", "head"),
-            (f"deformed, displacements times {factor:g}", _DEFORMED),
-            ("undeformed, where it differs", _GHOST),
-        ]
-        sheet.column(1110, shape_rows)
-    return factor
+    plan = Plan(view)
+    for part in mesh.part_names:
+        facets, nodes = boundary(mesh, part), mesh.part_nodes(part)
+        if factor * size[nodes].max() * view.scale > _VISIBLE:
+            plan.add(add_ghost, facets, mesh.points)
+        plan.add(add_shape, facets, moved, u, (0.0, 1e3 * largest or 1.0))
+    plan.add(Sheet.text, (40, SIZE[1] - 40), title, size=24, centred=False)
+    plan.add(Sheet.triad)
+    plan.add(Sheet.scale_bar)
+    if largest > 0:
+        _note_beside(plan, moved[np.argmax(size)], f"largest: {1e3 * largest:.4g} mm", seen)
+    shape_rows: list[tuple[str, str | None]] = [
+        ("Shape", "head"),
+        (f"deformed, displacements times {factor:g}", _DEFORMED),
+        ("undeformed, where it differs", _GHOST),
+    ]
+    plan.add(Sheet.column, 1110, shape_rows)
+    return factor, drawn(plan, path)
 
 
-def picture_of_displacements(mesh: Mesh, u: Floats, path: Path) -> float:
+def picture_of_displacements(mesh: Mesh, u: Floats, path: Path) -> tuple[float, Picture]:
     """Draw a mesh, deformed, exaggerated and coloured by displacement, with its elements' edges.
+
+    It is drawn beside what follows: `Picture.wait` returns when the file is there.
 
     Parameters
     ----------
@@ -107,6 +110,8 @@ def picture_of_displacements(mesh: Mesh, u: Floats, path: Path) -> float:
     factor : float
         How many times larger the displacements are drawn than they are; the largest is then about
         8 % of the longest side of the box round the mesh. 1 where nothing moves.
+    picture : Picture
+        The picture in the making.
 
     Raises
     ------
@@ -115,25 +120,16 @@ def picture_of_displacements(mesh: Mesh, u: Floats, path: Path) -> float:
     ValueError
         A displacement is not finite.
     """
-    import pyvista
-
     size = _lengths(u)
     factor = exaggeration(float(size.max()), float(np.ptp(mesh.points, axis=0).max()))
     facets, moved = boundary(mesh), mesh.points + factor * u
     view = View.fitting(moved, _TOWARDS_A_COMPONENT, top=40, bottom=180)
-    # the elements' edges, their middles included
-    sides = np.concatenate([facets[:, [a, m, b]] for a, m, b in ((0, 3, 1), (1, 4, 2), (2, 5, 0))])
-    lines = np.column_stack([np.full(len(sides), 3), sides])
-    # nearer to the eye than the surface that they lie on
-    nearer = moved - 2e-3 * view.reach * view.forward
     smallest, largest = 1e3 * size[facets].min(), 1e3 * size[facets].max()
-    with drawing(path, view) as sheet:
-        shape = curved_surface(facets, moved, u)
-        sheet.coloured(shape, (smallest, largest) if largest > smallest else (0.0, largest or 1.0))
-        edges = pyvista.PolyData(nearer, lines=lines.ravel())
-        sheet.plotter.add_mesh(edges, color=INK, line_width=1.0, opacity=0.35)
-        sheet.triad()
-    return factor
+    limits = (smallest, largest) if largest > smallest else (0.0, largest or 1.0)
+    plan = Plan(view)
+    plan.add(add_shape_with_elements, facets, moved, u, limits)
+    plan.add(Sheet.triad)
+    return factor, drawn(plan, path)
 
 
 def exaggeration(largest: float, length: float) -> float:
@@ -156,10 +152,10 @@ def _lengths(u: Floats) -> Floats:
     return size
 
 
-def _note_beside(sheet: Sheet, point: Floats, text: str, points: Floats) -> None:
+def _note_beside(plan: Plan, point: Floats, text: str, points: Floats) -> None:
     """Label a point [m] clear of all the points: above them, or below where that is nearer."""
-    foot, flat = sheet.view.project(point), sheet.view.project(points)
+    foot, flat = plan.view.project(point), plan.view.project(points)
     near = flat[np.abs(flat[:, 0] - foot[0]) < 150, 1] - foot[1]
     up, down = near.max() + 40, near.min() - 40
     across = math.copysign(70, SIZE[0] / 2 - foot[0])
-    sheet.note(point, text, (across, up if up < -down else down))
+    plan.add(Sheet.note, point, text, (across, up if up < -down else down))

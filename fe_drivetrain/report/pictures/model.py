@@ -12,22 +12,24 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.typeset import with_prefix
 from fe_drivetrain.elasticity.mesh.mesh import Mesh, boundary
-from fe_drivetrain.report.pictures.sheet import FAINT, INK, Sheet, drawing
-from fe_drivetrain.report.pictures.surfaces import curved_surface, cut_open, part_solid, sharp_edges
+from fe_drivetrain.report.pictures.bodies import add_open_part, add_part
+from fe_drivetrain.report.pictures.drawing_process import Picture, drawn
+from fe_drivetrain.report.pictures.sheet import FAINT, INK, Plan, Sheet
 from fe_drivetrain.report.pictures.symbols import (
     FORCE,
     GROUND,
     MOMENT,
     SPRING,
-    add_fixed_base,
     add_gearbox,
     add_hub_loads,
     add_load_point,
+    add_plate,
     hub_arrows,
 )
 from fe_drivetrain.report.pictures.view import ALONG_THE_SHAFT, STRIP, View
 
 if TYPE_CHECKING:
+    from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit
     from fe_drivetrain.shafts.response.model import Model
 
 PARTS = {"shaft": "#9fb4c7", "bearing": "#e8a33d", "housing": "#6ba292", "nose": "#b3bf72"}
@@ -45,8 +47,10 @@ _INTERFACES = {
 }
 
 
-def picture_of_model(model: Model, path: Path) -> None:
+def picture_of_model(model: Model, path: Path) -> Picture:
     """Draw what a model consists of, cut open by a quarter, with loads, supports and dimensions.
+
+    It is drawn beside what follows: `Picture.wait` returns when the file is there.
 
     Parameters
     ----------
@@ -76,27 +80,42 @@ def picture_of_model(model: Model, path: Path) -> None:
     under = _line_under(mesh, stations)
     seen = np.concatenate([mesh.points, *symbols, under])
     view = View.fitting(seen, ALONG_THE_SHAFT, top=60, bottom=STRIP + 60)
-    with drawing(path, view) as sheet:
-        for part in mesh.part_names:
-            surface = curved_surface(boundary(mesh, part), mesh.points)
-            colour = PARTS[_kind(part)]
-            # a solid shaft stays whole, as in any drawing
-            if part == "shaft" and "shaft.bore" not in mesh.faces:
-                sheet.solid(surface, sharp_edges(surface), colour)
-            else:
-                sheet.solid(*cut_open(surface, part_solid(mesh, part)), colour)
-        add_hub_loads(sheet.plotter, hub, a)
-        add_gearbox(sheet.plotter, scene.gearbox, rear, radius, a)
-        for unit in scene.bearing_units:
-            add_fixed_base(sheet.plotter, mesh, unit, 0.06 * a)
-        for point in scene.load_points:
-            add_load_point(sheet.plotter, point, scene.shaft.outer_radius(point.x), a)
-        _dimensions(sheet, stations, under, mesh)
-        _label_hub_loads(sheet, hub, a)
-        _label_parts(sheet, model)
-        sheet.triad()
-        for left, rows in zip((190, 530, 910, 1250), _legend(model), strict=True):
-            sheet.column(left, rows)
+    plan = Plan(view)
+    for part in mesh.part_names:
+        facets, colour = boundary(mesh, part), PARTS[_kind(part)]
+        # a solid shaft stays whole, as in any drawing
+        if part == "shaft" and "shaft.bore" not in mesh.faces:
+            plan.add(add_part, facets, mesh.points, colour)
+        else:
+            plan.add(add_open_part, facets, mesh.cells[mesh.part_cells(part)], mesh.points, colour)
+    plan.add(add_hub_loads, hub, a)
+    plan.add(add_gearbox, scene.gearbox.stiffness, scene.gearbox.weight > 0, rear, radius, a)
+    for unit in scene.bearing_units:
+        _fixed_base(plan, mesh, unit, 0.06 * a)
+    for point in scene.load_points:
+        plan.add(
+            add_load_point, point.span, bool(point.weight), scene.shaft.outer_radius(point.x), a
+        )
+    _dimensions(plan, stations, under, mesh)
+    _label_hub_loads(plan, hub, a)
+    _label_parts(plan, model)
+    plan.add(Sheet.triad)
+    for left, rows in zip((190, 530, 910, 1250), _legend(model), strict=True):
+        plan.add(Sheet.column, left, rows)
+    return drawn(plan, path)
+
+
+def _fixed_base(plan: Plan, mesh: Mesh, unit: BearingUnit, thickness: float) -> None:
+    """Show where a housing is held: a plate under its base, or washers on its foot."""
+    name = f"{unit.bearing.name}.housing"
+    if unit.condensed is not None or f"{name}.base" not in mesh.faces:
+        return  # no solid, or one that stands on parts of another unit
+    heads = [face for face in mesh.faces if face.startswith(f"{name}.head ")]
+    bolted = unit.foreign is None and not unit.parts and unit.block.base == "bolted"
+    lift = unit.block.foot_thickness + thickness if bolted else 0.0
+    for face in heads or [f"{name}.base"]:
+        thick = thickness if heads else -thickness
+        plan.add(add_plate, mesh.faces[face], mesh.points, thick, lift)
 
 
 def _kind(part: str) -> str:
@@ -115,63 +134,68 @@ def _line_under(mesh: Mesh, stations: Sequence[float]) -> Floats:
     return points
 
 
-def _dimensions(sheet: Sheet, stations: Sequence[float], under: Floats, mesh: Mesh) -> None:
+def _dimensions(plan: Plan, stations: Sequence[float], under: Floats, mesh: Mesh) -> None:
     """A chain of dimensions along x, next to the line under the solids."""
-    line = sheet.view.project(under) - np.array([0.0, 34.0])
+    line = plan.view.project(under) - np.array([0.0, 34.0])
     for x, end in zip(stations, line, strict=True):
         near = mesh.points[np.abs(mesh.points[:, 0] - x) < 0.03 * np.ptp(stations)]
-        start = sheet.view.project([x, 0.0, near[:, 2].min()])
+        start = plan.view.project([x, 0.0, near[:, 2].min()])
         end = end - np.array([0.0, 8.0])
         dashes = np.arange(0.0, np.linalg.norm(end - start), 4.5)
         way = (end - start) / np.linalg.norm(end - start)
-        sheet.line((start + dashes[:, None] * way)[: len(dashes) // 2 * 2], FAINT, 1.6)
+        plan.add(Sheet.line, (start + dashes[:, None] * way)[: len(dashes) // 2 * 2], FAINT, 1.6)
     for (x0, p), (x1, q) in pairwise(zip(stations, line, strict=True)):
         way = (q - p) / np.linalg.norm(q - p)
         across = np.array([-way[1], way[0]])
-        sheet.line([p, q])
+        plan.add(Sheet.line, [p, q])
         for tip, sign in ((p, 1.0), (q, -1.0)):
             back = tip + 13 * sign * way
-            sheet.area([tip, back + 4 * across, back - 4 * across], INK)
-        sheet.text((p + q) / 2, f" {x1 - x0:.4g} m ", size=18, background=True)
+            plan.add(Sheet.area, [tip, back + 4 * across, back - 4 * across], INK)
+        plan.add(Sheet.text, (p + q) / 2, f" {x1 - x0:.4g} m ", size=18, background=True)
 
 
-def _label_hub_loads(sheet: Sheet, hub: Floats, a: float) -> None:
+def _label_hub_loads(plan: Plan, hub: Floats, a: float) -> None:
     sides = {"x": (0.0, -26.0), "y": (-2.0, 24.0), "z": (30.0, -10.0)}
     for name, tail, tip in hub_arrows(hub, a):
         # beside the head of an arrow is the most room; that of Fx is inside the shaft
         place = (tail + tip) / 2 if name.endswith("x") else tip
         colour = MOMENT if name.startswith("M") else FORCE
-        sheet.text(
-            sheet.view.project(place) + sides[name[1]], name, colour, size=20, background=True
+        plan.add(
+            Sheet.text,
+            plan.view.project(place) + sides[name[1]],
+            name,
+            colour,
+            size=20,
+            background=True,
         )
 
 
-def _label_parts(sheet: Sheet, model: Model) -> None:
+def _label_parts(plan: Plan, model: Model) -> None:
     mesh = model.mesh
-    sheet.note(model.points["hub"].position, "hub", (-90, -150))
-    sheet.note(model.points["gearbox"].position, "gearbox", (100, 115))
+    plan.add(Sheet.note, model.points["hub"].position, "hub", (-90, -150))
+    plan.add(Sheet.note, model.points["gearbox"].position, "gearbox", (100, 115))
     for point in model.scene.load_points:
         top = [point.x, 0.0, model.scene.shaft.outer_radius(point.x)]
-        sheet.note(top, point.name.replace("_", " "), (40, 110))
+        plan.add(Sheet.note, top, point.name.replace("_", " "), (40, 110))
     for bearing in model.scene.nose_bearings:
         # between the two faces, where the cut is upright
         faces = (f"shaft.band.{bearing.name}", f"nose.band.{bearing.name}")
         top, bottom = (mesh.points[mesh.face_nodes(face)][:, 2].max() for face in faces)
         for x in np.linspace(*bearing.span, _STROKES):
-            sheet.line(sheet.view.project([[x, 0.0, top], [x, 0.0, bottom]]), SPRING, 2.5)
+            plan.add(Sheet.line, plan.view.project([[x, 0.0, top], [x, 0.0, bottom]]), SPRING, 2.5)
         height = (top + bottom) / 2
-        sheet.note([bearing.x, 0.0, height], bearing.name.replace("_", " "), (-60, 190))
+        plan.add(Sheet.note, [bearing.x, 0.0, height], bearing.name.replace("_", " "), (-60, 190))
     if model.scene.nose is not None:
-        sheet.note(model.points["nose.root"].position, "nose, held", (60, -150), GROUND)
+        plan.add(Sheet.note, model.points["nose.root"].position, "nose, held", (60, -150), GROUND)
     for unit in model.scene.bearing_units:
         name = unit.bearing.name
         # the upright face of the cut shows the bearing at y = 0, between seat and outer face
         faces = (f"{name}.outer", f"shaft.seat.{name}")
         height = np.mean([mesh.points[mesh.face_nodes(face)][:, 2].max() for face in faces])
-        sheet.note([unit.bearing.x, 0.0, height], name.replace("_", " "), (-60, 150))
+        plan.add(Sheet.note, [unit.bearing.x, 0.0, height], name.replace("_", " "), (-60, 150))
         if unit.condensed is not None:
             foot = [unit.bearing.x, 0.0, -unit.bearing.raceway_diameter / 2]
-            sheet.note(foot, "on a stiffness, to ground", (-140, -60), GROUND)
+            plan.add(Sheet.note, foot, "on a stiffness, to ground", (-140, -60), GROUND)
             continue
         if f"{name}.housing.base" not in mesh.faces:
             continue  # it stands on parts of another unit
@@ -180,14 +204,14 @@ def _label_parts(sheet: Sheet, model: Model) -> None:
         if unit.parts or unit.foreign is not None:
             how = "held faces fixed" if unit.foreign is None else unit.foreign.held_by
             stands = how if unit.bedplate is None else "on a bedplate"
-            sheet.note(corner, stands, (-140, -14), GROUND)
+            plan.add(Sheet.note, corner, stands, (-140, -14), GROUND)
         elif unit.block.base == "bolted":
             top = corner + unit.block.foot_thickness * np.eye(3)[2]
             bolts = "fixed at the bolts" if unit.bedplate is None else "bolted to a bedplate"
-            sheet.note(top, bolts, (-170, -24), GROUND)
+            plan.add(Sheet.note, top, bolts, (-170, -24), GROUND)
         else:
             stands = "fixed base" if unit.bedplate is None else "on a bedplate"
-            sheet.note(corner, stands, (-140, -14), GROUND)
+            plan.add(Sheet.note, corner, stands, (-140, -14), GROUND)
 
 
 def _legend(model: Model) -> list[list[tuple[str, str | None]]]:

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.report.pictures.sheet import drawing
-from fe_drivetrain.report.pictures.surfaces import sharp_edges
+from fe_drivetrain.report.pictures.bodies import add_triangles
+from fe_drivetrain.report.pictures.drawing_process import Picture, drawn
+from fe_drivetrain.report.pictures.sheet import Plan, Sheet
 from fe_drivetrain.report.pictures.view import View
 
 Place = tuple[float, float, float]
@@ -22,8 +23,8 @@ _AWAY = 130  # pixels from a place to its name
 
 def picture_of_part(
     points: Floats, triangles: Ints, marks: Sequence[tuple[str, Place, Place, Place]], path: Path
-) -> None:
-    """Draw a surface, and names at places on it.
+) -> Picture:
+    """Draw a surface, and names at places on it; `Picture.wait` returns when the file is there.
 
     Parameters
     ----------
@@ -42,18 +43,16 @@ def picture_of_part(
     NoPictureError
         This machine cannot draw.
     """
-    import pyvista
-
     view = View.fitting(points[np.unique(triangles)], _FROM, top=80, bottom=80)
-    surface = pyvista.PolyData.from_regular_faces(np.array(points), triangles.tolist())
-    with drawing(path, view) as sheet:
-        sheet.solid(surface, sharp_edges(surface), _COLOUR)
-        middle = view.project(points.mean(axis=0))
-        seen = [mark for mark in marks if np.dot(mark[3], view.forward) <= 0.0]
-        for name, middle_of_it, reach, _ in seen[:_MAXIMUM]:
-            towards = -np.sign(np.dot(reach, view.forward))
-            place = np.array(middle_of_it) + towards * np.array(reach)
-            away = view.project(place) - middle
-            away = away / max(float(np.linalg.norm(away)), 1.0)
-            sheet.note(place, name, (_AWAY * away[0], _AWAY * (away[1] or 1.0)))
-        sheet.triad()
+    plan = Plan(view)
+    plan.add(add_triangles, points, triangles, _COLOUR)
+    middle = view.project(points.mean(axis=0))
+    seen = [mark for mark in marks if np.dot(mark[3], view.forward) <= 0.0]
+    for name, middle_of_it, reach, _ in seen[:_MAXIMUM]:
+        towards = -np.sign(np.dot(reach, view.forward))
+        place = np.array(middle_of_it) + towards * np.array(reach)
+        away = view.project(place) - middle
+        away = away / max(float(np.linalg.norm(away)), 1.0)
+        plan.add(Sheet.note, place, name, (_AWAY * away[0], _AWAY * (away[1] or 1.0)))
+    plan.add(Sheet.triad)
+    return drawn(plan, path)

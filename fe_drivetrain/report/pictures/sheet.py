@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Concatenate, ParamSpec
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,35 @@ from fe_drivetrain.report.pictures.view import SIZE, STRIP, View
 
 INK = "#1f2933"
 FAINT = "#7b8794"
+
+_P = ParamSpec("_P")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a picture shows, as plain data: it can be drawn in another process.
+
+    Attributes
+    ----------
+    view : View
+        How it looks at what is drawn.
+    steps : list
+        Functions that draw on a `Sheet`, in order, with their arguments.
+    """
+
+    view: View
+    steps: list[tuple[Callable[..., object], tuple[Any, ...], dict[str, Any]]] = field(
+        default_factory=list
+    )
+
+    def add(
+        self,
+        draw: Callable[Concatenate[Sheet, _P], object],
+        *args: _P.args,
+        **kwargs: _P.kwargs,
+    ) -> None:
+        """Have ``draw(sheet, ...)`` called; it is a function that can be imported, or a method."""
+        self.steps.append((draw, args, kwargs))
 
 
 @dataclass(frozen=True)
@@ -221,11 +250,6 @@ def drawing(path: Path, view: View) -> Iterator[Sheet]:
     ------
     Sheet
         To draw on.
-
-    Raises
-    ------
-    NoPictureError
-        This machine cannot draw.
     """
     with off_screen_plotter(SIZE) as plotter:
         yield Sheet(plotter, view)

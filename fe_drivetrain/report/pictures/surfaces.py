@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.elasticity.mesh.mesh import Mesh
 
 _FINE = 20_000  # facets; of more, each is small enough to be drawn with fewer pieces
 
@@ -41,12 +40,11 @@ def curved_surface(facets: Ints, positions: Floats, vectors: Floats | None = Non
     )
 
 
-def part_solid(mesh: Mesh, part: str) -> Any:
-    """The elements of a part as VTK's quadratic tetrahedra, a pyvista.UnstructuredGrid."""
+def part_solid(cells: Ints, points: Floats) -> Any:
+    """Elements (ne, 10) as VTK's quadratic tetrahedra, a pyvista.UnstructuredGrid."""
     import pyvista
 
-    cells = {pyvista.CellType.QUADRATIC_TETRA: mesh.cells[mesh.part_cells(part)]}
-    return pyvista.UnstructuredGrid(cells, mesh.points.copy())
+    return pyvista.UnstructuredGrid({pyvista.CellType.QUADRATIC_TETRA: cells}, points.copy())
 
 
 def sharp_edges(surface: Any) -> Any:

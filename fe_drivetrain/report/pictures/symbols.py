@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.elasticity.mesh.mesh import Mesh
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.report.pictures.sheet import Sheet
 from fe_drivetrain.report.pictures.surfaces import curved_surface
-
-if TYPE_CHECKING:
-    from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit
-    from fe_drivetrain.drivetrain_file.scene import Gearbox, LoadPoint
 
 FORCE = "#b3261e"
 MOMENT = "#6b3fa0"
@@ -20,18 +17,12 @@ SPRING = "#25567b"
 GROUND = "#5b4636"
 
 
-def add_fixed_base(plotter: Any, mesh: Mesh, unit: BearingUnit, thickness: float) -> None:
-    """Show where a housing is held: a plate under its base, or washers on its foot."""
-    name = f"{unit.bearing.name}.housing"
-    if unit.condensed is not None or f"{name}.base" not in mesh.faces:
-        return  # no solid, or one that stands on parts of another unit
-    heads = [face for face in mesh.faces if face.startswith(f"{name}.head ")]
-    for face in heads or [f"{name}.base"]:
-        surface = curved_surface(mesh.faces[face], mesh.points)
-        plate = surface.extrude((0.0, 0.0, thickness if heads else -thickness), capping=True)
-        if unit.foreign is None and not unit.parts and unit.block.base == "bolted":
-            plate = plate.translate((0.0, 0.0, unit.block.foot_thickness + thickness))
-        plotter.add_mesh(plate, color=GROUND, ambient=0.3)
+def add_plate(sheet: Sheet, facets: Ints, points: Floats, thickness: float, lift: float) -> None:
+    """Draw the ground under a face, or washers on it: as thick as given, and lifted [m]."""
+    plate = curved_surface(facets, points).extrude((0.0, 0.0, thickness), capping=True)
+    if lift:
+        plate = plate.translate((0.0, 0.0, lift))
+    sheet.plotter.add_mesh(plate, color=GROUND, ambient=0.3)
 
 
 def hub_arrows(hub: Floats, a: float) -> list[tuple[str, Floats, Floats]]:
@@ -47,37 +38,46 @@ def hub_arrows(hub: Floats, a: float) -> list[tuple[str, Floats, Floats]]:
     return arrows
 
 
-def add_hub_loads(plotter: Any, hub: Floats, a: float) -> None:
+def add_hub_loads(sheet: Sheet, hub: Floats, a: float) -> None:
     """Draw the arrows of the six hub loads, each of length `a` [m]."""
     for name, tail, tip in hub_arrows(hub, a):
         moment = name.startswith("M")
-        _add_arrow(plotter, tail, tip, MOMENT if moment else FORCE, 2 if moment else 1)
+        _add_arrow(sheet.plotter, tail, tip, MOMENT if moment else FORCE, 2 if moment else 1)
 
 
-def add_load_point(plotter: Any, point: LoadPoint, radius: float, a: float) -> None:
+def add_load_point(
+    sheet: Sheet, span: Sequence[float], weighs: bool, radius: float, a: float
+) -> None:
     """Draw a band round the shaft where loads enter, and an arrow for its weight, if any."""
     import pyvista
 
     band = pyvista.Tube(
-        pointa=(point.span[0], 0.0, 0.0),
-        pointb=(point.span[1], 0.0, 0.0),
+        pointa=(span[0], 0.0, 0.0),
+        pointb=(span[1], 0.0, 0.0),
         radius=1.01 * radius,
         n_sides=48,
     )
-    plotter.add_mesh(band, color=FORCE, ambient=0.3)
-    if point.weight:
-        top = np.array([point.x, 0.0, radius])
-        _add_arrow(plotter, top + a * np.eye(3)[2], top, FORCE, 1)
+    sheet.plotter.add_mesh(band, color=FORCE, ambient=0.3)
+    if weighs:
+        top = np.array([0.5 * (span[0] + span[1]), 0.0, radius])
+        _add_arrow(sheet.plotter, top + a * np.eye(3)[2], top, FORCE, 1)
 
 
-def add_gearbox(plotter: Any, gearbox: Gearbox, rear: Floats, radius: float, a: float) -> None:
+def add_gearbox(
+    sheet: Sheet,
+    stiffness: Sequence[float | str],
+    weighs: bool,
+    rear: Floats,
+    radius: float,
+    a: float,
+) -> None:
     """Springs (coils), rigid supports (rods) and the weight (an arrow from above)."""
     import pyvista
 
     x, y, z = np.eye(3)
     # towards the viewer and down, where they hide nothing
     starts = ((x, 0.0), (-y, radius), (-z, radius))
-    for (way, start), k in zip(starts, gearbox.stiffness[:3], strict=True):
+    for (way, start), k in zip(starts, stiffness[:3], strict=True):
         if k == 0:
             continue
         foot, ground = rear + start * way, rear + (start + a) * way
@@ -85,13 +85,13 @@ def add_gearbox(plotter: Any, gearbox: Gearbox, rear: Floats, radius: float, a: 
             shape = pyvista.Tube(pointa=foot, pointb=ground, radius=0.06 * a)
         else:
             shape = _coil(foot, ground, 0.13 * a).tube(radius=0.022 * a, n_sides=16)
-        plotter.add_mesh(shape, color=SPRING, ambient=0.3)
+        sheet.plotter.add_mesh(shape, color=SPRING, ambient=0.3)
         plate_x, plate_y, plate_z = np.where(way != 0, 0.06 * a, 0.45 * a)
         plate = pyvista.Cube(center=ground, x_length=plate_x, y_length=plate_y, z_length=plate_z)
-        plotter.add_mesh(plate, color=GROUND, ambient=0.3)
-    if gearbox.weight > 0:
+        sheet.plotter.add_mesh(plate, color=GROUND, ambient=0.3)
+    if weighs:
         tip = rear + radius * z
-        _add_arrow(plotter, tip + a * z, tip, FORCE)
+        _add_arrow(sheet.plotter, tip + a * z, tip, FORCE)
 
 
 def _add_arrow(plotter: Any, tail: Floats, tip: Floats, colour: str, heads: int = 1) -> None:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.spatial import cKDTree
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.components import FORCES
@@ -450,6 +449,8 @@ def joint_pairs(mesh: Mesh, bearing: str) -> tuple[Ints, Ints]:
     InputError
         The two faces do not match.
     """
+    from scipy.spatial import cKDTree
+
     inner = mesh.face_nodes(f"{bearing}.outer")
     outer = mesh.face_nodes(f"{bearing}.housing.bore")
     distance, partner = cKDTree(mesh.points[outer]).query(mesh.points[inner])

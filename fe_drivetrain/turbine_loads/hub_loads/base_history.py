@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate import trapezoid
-from scipy.interpolate import CubicSpline
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -203,6 +201,8 @@ def read_base_history(
     InputError
         The file cannot be read, or has no such channel.
     """
+    from scipy.interpolate import CubicSpline
+
     file, reading = existing_file(path, KIND), reading or BaseReading()
     require_kind(file, KIND)
     channels = _channels(file, mapping)
@@ -254,6 +254,8 @@ def _at_centre(
     name: str, time: Floats, values: Floats, read: str, reading: BaseReading
 ) -> BaseHistory:
     """The history about the rotor's centre, without its mean where that is not kept."""
+    from scipy.integrate import trapezoid
+
     carried = values.copy()
     carried[:, :3] -= np.cross(values[:, 3:], np.array(reading.place))
     mean = np.asarray(trapezoid(carried, time, axis=0) / (time[-1] - time[0]))

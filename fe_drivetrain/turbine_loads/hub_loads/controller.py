@@ -14,7 +14,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.turbine_loads.hub_loads.aero_rotor import (
@@ -275,6 +274,8 @@ def steady_operation(turbine: Turbine, controller: Controller, wind_speed: float
     InputError
         The wind speed is outside the operating range.
     """
+    from scipy.optimize import brentq
+
     rotor = turbine.rotor
     operating_point(rotor, wind_speed)  # says what is wrong with the wind speed
     rated = controller.rated_speed

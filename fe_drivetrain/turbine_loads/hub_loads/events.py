@@ -16,8 +16,6 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.signal import StateSpace, lsim
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
@@ -206,6 +204,8 @@ def drawn_cycles(asked: Statistics, random: np.random.Generator) -> tuple[Floats
     InputError
         No cycles have them.
     """
+    from scipy.optimize import brentq
+
     half = round(0.5 * (asked.seconds * SWING - 1.0))  # above the median, and below
     grown = np.append(random.uniform(0.0, 1.0, half - 1), 1.0)
     small = asked.median * np.append(random.uniform(0.2, 1.0, half - 1), 0.2)
@@ -342,6 +342,8 @@ def grid_loss_twist(
     seconds, rate : float
         As there.
     """
+    from scipy.signal import StateSpace, lsim
+
     time = np.arange(round(seconds * rate)) / rate
     thrust = 0.5 + 0.5 * np.cos(np.pi * np.clip(time / 3.0, 0.0, 1.0))
     stiffness, damping = turbine.shaft_stiffness, turbine.shaft_damping
