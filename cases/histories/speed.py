@@ -1,6 +1,5 @@
 """Samples per second of each step that histories go through, against other packages."""
 
-import importlib
 import shutil
 import tempfile
 import time
@@ -14,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.cases import case
+from fe_drivetrain.cases.histories.speed_beside import PEERS, PLAIN, counters, counting, reading
 from fe_drivetrain.common import Floats, timed_runs
 from fe_drivetrain.common.cache import switched_off
 from fe_drivetrain.report.suite import Page, Record, Run, goal
@@ -39,7 +39,8 @@ FILE = 120_000  # samples of a history that goes through the whole of 'loads'
 
 @case(
     "Speed of statistics, counting, spectra and loops, in samples per second",
-    source="measured on this machine; rainflow 3, rfcnt 0.6, pylife 2 where they are installed",
+    source="measured on this machine; rainflow 3, rfcnt 0.6, pylife 2, QATS 5, weio 2 and "
+    "openfast_io 4 where they are installed",
     settings={
         "samples": "20000000 (quick 1000000; from 524288)",
         "repeats": "5 (quick 1; from 1)",
@@ -56,9 +57,9 @@ def run(run: Run, page: Page) -> None:
     for size in sizes:
         load, other = noise(size, 1), noise(size, 2)
         at = np.arange(size, dtype=np.float64) * STEP
-        tasks = steps(at, load, other) | peers(load)
+        tasks = steps(at, load, other) | counters(load)
         for name, task in tasks.items():
-            if size > SIZES[1] and name in ("load loops", PACKAGE):
+            if size > SIZES[1] and name in ("load loops", *PLAIN):
                 continue
             with run.step(name):
                 _, times = timed_runs(task, max(repeats, 3), time.process_time)
@@ -79,6 +80,9 @@ def run(run: Run, page: Page) -> None:
         by="step",
         log="xy",
     )
+    size = sizes[min(1, len(sizes) - 1)]
+    counting(run, page, noise(size, 1), repeats)
+    reading(run, page, sizes[0], repeats)
     cores(run, page, repeats)
     many_files(run, page)
     last, first = (
@@ -134,15 +138,6 @@ def answer(page: Page, first: Mapping[str, float], counted: float) -> None:
     )
 
 
-PACKAGE = "rainflow, the package"
-PEERS = {
-    PACKAGE: "the same cycles, in plain Python",
-    "rfcnt, in 1000 classes": "it decides by class which cycles close, so that it is no count "
-    "after the standard",
-    "pylife, whole cycles alone": "what the end leaves open is no cycle of it but a list of values",
-}
-
-
 def steps(at: Floats, load: Floats, other: Floats) -> dict[str, Callable[[], Any]]:
     """What `loads` does with each channel, or each pair of them."""
     levels = even_levels(load.min(), load.max())
@@ -160,36 +155,6 @@ def noise(size: int, seed: int) -> Floats:
     generator = np.random.default_rng(seed)
     slow = np.convolve(generator.standard_normal(size), np.ones(20) / 20.0, "same")
     return np.asarray(5.0 + slow + 0.5 * np.sin(2 * np.pi * 0.6 * STEP * np.arange(size) + seed))
-
-
-def peers(load: Floats) -> dict[str, Callable[[], Any]]:
-    """Other packages that are there."""
-    found: dict[str, Callable[[], Any]] = {}
-    width = float(np.ptp(load)) / 990.0
-
-    def package(name: str) -> Any:
-        try:
-            return importlib.import_module(name)
-        except ImportError:
-            return None
-
-    own, rfcnt, pylife = (package(n) for n in ("rainflow", "rfcnt", "pylife.stress.rainflow"))
-    of_package, in_classes, whole = PEERS
-    if own:
-        found[of_package] = lambda: list(own.extract_cycles(load))
-    if rfcnt:
-        found[in_classes] = lambda: rfcnt.rfc(
-            load,
-            class_width=width,
-            class_count=1000,
-            class_offset=float(load.min()) - 4.0 * width,
-            hysteresis=0.0,
-            residual_method=4,
-            spread_damage=-1,
-        )
-    if pylife:
-        found[whole] = lambda: pylife.FourPointDetector(pylife.LoopValueRecorder()).process(load)
-    return found
 
 
 @dataclass

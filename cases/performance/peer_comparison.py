@@ -1,6 +1,7 @@
 """This project beside the tools that would otherwise be used: time, memory, accuracy."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -51,9 +52,13 @@ COLOURS = {
     "sfepy": "#cc79a7",
     "felupe": "#e69f00",
     "dolfinx": "#0072b2",
+    "mfem": "#8b5e3c",
+    "kratos": "#7a3e9d",
+    "fedoo": "#a0a000",
+    "torch_fem": "#ee5533",
 }
-DASHES = ("solid", "dash", "dot", "dashdot")
-SYMBOLS = ("circle", "square", "diamond", "x")
+DASHES = ("solid", "dash", "dot", "dashdot", "longdash")
+SYMBOLS = ("circle", "square", "diamond", "x", "triangle-up")
 
 
 @case(
@@ -62,8 +67,9 @@ SYMBOLS = ("circle", "square", "diamond", "x")
     name="peers",
     alone="full",
     settings={
-        "tools": "[this_project, scikit_fem.superlu, scikit_fem.pyamg, calculix, ngsolve, "
-        "sfepy.pardiso, felupe.pardiso, felupe.pardiso_own, dolfinx] "
+        "tools": "[this_project, scikit_fem.superlu, scikit_fem.pyamg, scikit_fem.mumps, "
+        "scikit_fem.cholmod, calculix, ngsolve, sfepy.pardiso, felupe.pardiso, "
+        "felupe.pardiso_own, dolfinx, mfem, kratos, fedoo, torch_fem] "
         "(quick [this_project.auto, scikit_fem.superlu])",
         "problems": "[shaft, assembly] (quick [shaft])",
         "sizes": "[10000, 50000, 110000, 300000, 1000000] (quick [10000])",
@@ -178,12 +184,17 @@ def first_runs(
     found = {}
     for variant in variants:
         report(f"{variant.name}: a first small run")
+        reasons: list[str] = []
         for interpreter in interpreters():
             outcome = launch(variant, warm_up, warm_up, plan.limits, interpreter)
-            if variant not in found or outcome.status != "missing":
-                found[variant] = outcome, interpreter
+            found[variant] = outcome, interpreter
             if outcome.status != "missing":
                 break
+            reasons.append(outcome.reason)
+        else:
+            # what this Python lacks says more than what the system's lacks, or the other way round
+            every = "; ".join(dict.fromkeys(reasons))
+            found[variant] = replace(outcome, reason=every), interpreter
     return found
 
 

@@ -41,7 +41,8 @@ def method(plan: Plan) -> list[str]:
         "direct solvers, or the least of all where none came to an end.",
         "Quadrature is part of the equations, so tools share a rule where they take one: eleven "
         "points of degree 4, scikit-fem's. CalculiX has four points and no choice; NGSolve and "
-        "FElupe would take four by themselves, and are shown with both. The two rules differ by "
+        "FElupe would take four by themselves, and are shown with both; Kratos, fedoo and "
+        "torch-fem have four. The two rules differ by "
         "more than 1e-6 on coarse meshes, which is why errors are against the reference of the "
         "same rule.",
         "Iterative solvers stop at the loosest power of ten that leaves less than 1e-6 of the "
@@ -49,6 +50,14 @@ def method(plan: Plan) -> list[str]:
         "leaves what the tables show. With Newton's corrections is a way round: a step of large "
         "displacements at 1e-8 of the motion, whose every correction goes through the iterative "
         "solver again until the forces are balanced to 1e-7.",
+        "On thin walls and slender shafts the question is that of spectral coarse spaces: "
+        "`--set problems=[tube,slender] tools=[this_project.auto,this_project.schwarz,dolfinx] "
+        "sizes=[100000,1000000]` sets Schwarz beside PETSc's PCHPDDM (GenEO), adaptive PCBDDC and "
+        "GAMG. PETSc has a part for each process; PCHPDDM is left out where PETSc is built "
+        "without HPDDM, as Debian's is.",
+        "The wheels of MFEM and Kratos are taken as they are: MFEM's is serial, without hypre or "
+        "SuiteSparse, so that its own solver is Gauss-Seidel and PARDISO is plugged in; Kratos's "
+        "has neither PARDISO nor CHOLMOD, and counts assembly as solver, which it has in one call.",
         "SfePy has tetrahedra with straight edges only. It is given the curved nodes for its "
         "field and its mapping; the assembly stays its own.",
     ]

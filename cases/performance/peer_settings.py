@@ -21,12 +21,18 @@ DEFAULT_TOOLS = (
     OURS,
     "scikit_fem.superlu",
     "scikit_fem.pyamg",
+    "scikit_fem.mumps",
+    "scikit_fem.cholmod",
     "calculix",
     "ngsolve",
     "sfepy.pardiso",
     "felupe.pardiso",
     "felupe.pardiso_own",
     "dolfinx",
+    "mfem",
+    "kratos",
+    "fedoo",
+    "torch_fem",
 )
 """With the solvers that serve each tool best; the others by ``--set tools=[...]``."""
 

@@ -30,8 +30,19 @@ from fe_drivetrain.report.suite.result_folders import run_case
 from fe_drivetrain.report.suite.run import Run
 
 PEERS = launching.parse(
-    ["calculix.spooles", "ngsolve.multigrid", "sfepy.superlu", "felupe.superlu", "dolfinx.mumps"]
+    [
+        "calculix.spooles",
+        "ngsolve.multigrid",
+        "sfepy.superlu",
+        "felupe.superlu",
+        "dolfinx.mumps",
+        "dolfinx.bddc",
+        "kratos.amgcl",
+        "scikit_fem.mumps",
+    ]
 )
+BEYOND = launching.parse(["mfem", "fedoo", "torch_fem", "scikit_fem.cholmod", "dolfinx.hpddm"])
+"""Tools that .ci/consumers leaves out, for their size or what they need."""
 LIMITS = Limits(60.0, 8 * 2.0**30, 1)
 
 
@@ -167,6 +178,17 @@ def test_installed_peers_agree_where_quadrature_is_exact(variant, bar, tmp_path)
     assert outcome.status == "done", outcome.reason
     expected = 1.0 / (1.0 / bar.youngs_modulus).sum()
     assert outcome.found["stiffness"] == pytest.approx([expected], rel=rounds.EQUAL)
+
+
+@pytest.mark.parametrize("variant", BEYOND, ids=str)
+def test_peers_beyond_the_usual_ones_agree_on_every_motion_of_the_face(variant, bar, tmp_path):
+    problem = problems.with_motions(bar, 10)
+    outcome = measured(variant, problem, tmp_path)
+    if outcome.status == "missing":
+        pytest.skip(f"{variant.tool_name} is not installed: {outcome.reason}")
+    assert outcome.status == "done", outcome.reason
+    expected = stiffnesses_by("this_project", "superlu", problem)
+    assert outcome.found["stiffness"] == pytest.approx(expected, rel=rounds.EQUAL)
 
 
 @pytest.mark.needs  # looked for in the process of its own

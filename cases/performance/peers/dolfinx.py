@@ -15,13 +15,38 @@ if TYPE_CHECKING:
 
 NAME = "dolfinx"
 TOGETHER = True
-INSTALL = "apt-get install python3-dolfinx openmpi-bin"
+INSTALL = (
+    "apt-get install python3-dolfinx openmpi-bin; PCHPDDM needs a PETSc that was configured with "
+    "--download-hpddm --download-slepc"
+)
 VARIANTS = {
     "mumps": ("MUMPS", "direct", "common"),
     "gamg": ("GAMG and CG", "iterative", "common"),
+    "hpddm": ("PCHPDDM (GenEO) and CG", "iterative", "common"),
+    "bddc": ("PCBDDC, adaptive, and CG", "iterative", "common"),
 }
-TOLERANCE = 1e-5
+UNASSEMBLED = ("hpddm", "bddc")
+"""Their matrix stays in parts, one of each process, as spectral coarse spaces need it."""
 
+TOLERANCE = 1e-5
+OPTIONS = {
+    "gamg": {"mg_levels_ksp_type": "chebyshev", "mg_levels_pc_type": "jacobi"},
+    "bddc": {
+        "pc_bddc_symmetric": None,
+        "pc_bddc_adaptive_threshold": 10.0,
+    },
+    # the options of PETSc's ex76, GenEO's example: eigenvectors of each part, exact solvers
+    "hpddm": {
+        "pc_hpddm_levels_1_sub_pc_type": "cholesky",
+        "pc_hpddm_levels_1_sub_pc_factor_mat_solver_type": "mumps",
+        "pc_hpddm_levels_1_eps_nev": 20,
+        "pc_hpddm_levels_1_st_pc_type": "cholesky",
+        "pc_hpddm_coarse_pc_type": "cholesky",
+        "pc_hpddm_coarse_pc_factor_mat_solver_type": "mumps",
+        "pc_hpddm_coarse_correction": "balanced",
+    },
+}
+"""Of PETSc, for each preconditioner."""
 
 LAUNCH = ("mpiexec", "--bind-to", "none", "--oversubscribe", "-n", "{threads}")
 """What stands before the interpreter on the command line."""
@@ -62,7 +87,9 @@ def load(problem: Problem) -> Any:
     cells = problem.cells[:, order].astype(np.int64) if root else np.empty((0, 10), np.int64)
     points = problem.points if root else np.empty((0, 3))
     coordinates = ufl.VectorElement("Lagrange", ufl.tetrahedron, 2)
-    mesh = dolfinx.mesh.create_mesh(comm, cells, points, ufl.Mesh(coordinates))
+    # without cells of neighbours, so that a matrix in parts has no empty rows
+    apart = dolfinx.mesh.GhostMode.none
+    mesh = dolfinx.mesh.create_mesh(comm, cells, points, ufl.Mesh(coordinates), apart)
     faces = []
     for facets in (problem.fixed, problem.moved):
         tree = cKDTree(problem.points[np.unique(facets)])
@@ -116,14 +143,16 @@ def solve(state: Any, variant: str, clock: Clock) -> list[float]:
             b.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
             fem.petsc.set_bc(b, conditions)
             systems.append((b, conditions))
-        A = fem.petsc.assemble_matrix(a, bcs=systems[0][1])
-        A.assemble()
+        A = _matrix(a, systems[0][1], space, variant)
     with clock.step("solve"):
         solver = _solver(mesh.comm, A, space, variant)
         solutions = []
         for b, conditions in systems:
             solution = fem.Function(space)
-            fem.petsc.set_bc(solution.vector, conditions)
+            if variant in UNASSEMBLED:
+                fem.petsc.set_bc(b, conditions, scale=0.0)
+            else:
+                fem.petsc.set_bc(solution.vector, conditions)
             solver.solve(b, solution.vector)
             # GAMG's coarse spaces move the prescribed displacements a little
             fem.petsc.set_bc(solution.vector, conditions)
@@ -149,8 +178,59 @@ def _work(u: Any, v: Any, lam: Any, mu: Any) -> Any:
     return ufl.inner(stress, ufl.sym(ufl.grad(v)))
 
 
+def _matrix(a: Any, conditions: Any, space: Any, variant: str) -> Any:
+    """The matrix: assembled, or in parts, with each prescribed displacement on its own in all."""
+    from dolfinx import fem
+    from dolfinx.cpp import fem as compiled
+    from petsc4py import PETSc
+
+    if variant not in UNASSEMBLED:
+        A = fem.petsc.assemble_matrix(a, bcs=conditions)
+        A.assemble()
+        return A
+    if variant == "hpddm" and not PETSc.Sys.hasExternalPackage("hpddm"):
+        raise ImportError("this PETSc is built without HPDDM and SLEPc, as Debian's is")
+    index_map = space.dofmap.index_map
+    own, count = index_map.size_local, index_map.size_local + index_map.num_ghosts
+    part = PETSc.Mat().createAIJ(
+        (3 * count, 3 * count), bsize=3, nnz=_row_lengths(space, count), comm=PETSc.COMM_SELF
+    )
+    here = np.arange(count, dtype=np.int32)
+    names = PETSc.LGMap().create(here.astype(PETSc.IntType), bsize=3, comm=PETSc.COMM_SELF)
+    part.setLGMap(names, names)
+    constants, coefficients = compiled.pack_constants(a), compiled.pack_coefficients(a)
+    compiled.petsc.assemble_matrix(part, a, constants, coefficients, conditions)
+    part.assemblyBegin(PETSc.Mat.AssemblyType.FLUSH)
+    part.assemblyEnd(PETSc.Mat.AssemblyType.FLUSH)
+    for row in np.concatenate([c.dof_indices()[0] for c in conditions]).tolist():
+        part.setValue(row, row, 1.0)
+    part.assemble()
+    A = PETSc.Mat().create(space.mesh.comm)
+    A.setType("is")
+    A.setSizes(((3 * own, None), (3 * own, None)), bsize=3)
+    numbers = index_map.local_to_global(here).astype(PETSc.IntType)
+    places = PETSc.LGMap().create(numbers, bsize=3, comm=space.mesh.comm)
+    A.setLGMap(places, places)
+    A.setISLocalMat(part)
+    A.assemble()
+    return A
+
+
+def _row_lengths(space: Any, count: int) -> Any:
+    """Entries of each row of this process's part."""
+    from petsc4py import PETSc
+    from scipy import sparse
+
+    nodes = space.dofmap.list.array.reshape(-1, 10)
+    cells = np.repeat(np.arange(len(nodes)), 10)
+    of = sparse.csr_matrix(
+        (np.ones(nodes.size, np.int32), (cells, nodes.ravel())), (len(nodes), count)
+    )
+    return np.repeat(3 * np.diff((of.T @ of).tocsr().indptr), 3).astype(PETSc.IntType)
+
+
 def _solver(comm: Any, A: Any, space: Any, variant: str) -> Any:
-    """PETSc's solver: a Cholesky factor, or conjugate gradients with algebraic multigrid."""
+    """PETSc's solver: a Cholesky factor, or conjugate gradients with a preconditioner."""
     from petsc4py import PETSc
 
     solver = PETSc.KSP().create(comm)
@@ -164,13 +244,14 @@ def _solver(comm: Any, A: Any, space: Any, variant: str) -> Any:
         A.setNearNullSpace(_rigid_motions(space))
         solver.setType("cg")
         solver.setTolerances(rtol=TOLERANCE, max_it=1000)
-        preconditioner.setType("gamg")
+        preconditioner.setType(variant)
         options = PETSc.Options()
-        options["mg_levels_ksp_type"] = "chebyshev"
-        options["mg_levels_pc_type"] = "jacobi"
+        for key, value in OPTIONS[variant].items():
+            options[key] = value
         solver.setFromOptions()
     solver.setOperators(A)
-    solver.setInitialGuessNonzero(variant != "mumps")
+    solver.setErrorIfNotConverged(True)
+    solver.setInitialGuessNonzero(variant == "gamg")
     return solver
 
 

@@ -18,7 +18,19 @@ from typing import Any, Literal
 from fe_drivetrain.cases.performance.peers import runner
 from fe_drivetrain.common.files import scratch_folder
 
-TOOLS = ("this_project", "scikit_fem", "calculix", "ngsolve", "sfepy", "felupe", "dolfinx")
+TOOLS = (
+    "this_project",
+    "scikit_fem",
+    "calculix",
+    "ngsolve",
+    "sfepy",
+    "felupe",
+    "dolfinx",
+    "mfem",
+    "kratos",
+    "fedoo",
+    "torch_fem",
+)
 """Modules of this folder, each a tool."""
 
 Status = Literal["done", "missing", "over time", "over memory", "failed"]

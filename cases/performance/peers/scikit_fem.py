@@ -11,10 +11,15 @@ if TYPE_CHECKING:
 
 NAME = "scikit-fem"
 TOGETHER = True
-INSTALL = "pip install scikit-fem pyamg pypardiso"
+INSTALL = (
+    "pip install scikit-fem pyamg pypardiso python-mumps 'scikit-sparse>=0.5'; for the last two "
+    "apt-get install libmumps-seq-dev, and SuiteSparse 7 with its headers (Debian 13, not 12)"
+)
 VARIANTS = {
     "superlu": ("SuperLU, its default", "direct", "common"),
     "pardiso": ("PARDISO", "direct", "common"),
+    "mumps": ("MUMPS, by python-mumps", "direct", "common"),
+    "cholmod": ("CHOLMOD, by scikit-sparse 0.5", "direct", "common"),
     "pyamg": ("pyamg and CG", "iterative", "common"),
 }
 TOLERANCE = 1e-5
@@ -73,6 +78,10 @@ def solve(state: Any, variant: str, clock: Clock) -> list[float]:
         match variant:
             case "pardiso":
                 solver: Any = _pardiso
+            case "mumps":
+                solver = _mumps(A)
+            case "cholmod":
+                solver = _cholmod(A)
             case "pyamg":
                 solver = _amg(A, basis.doflocs[:, free[::3]].T, clock)
             case _:
@@ -96,6 +105,32 @@ def _pardiso(A: Any, b: Any, **_: Any) -> Any:
     import pypardiso
 
     return pypardiso.spsolve(A, b)  # which keeps the factor of the matrix that it had last
+
+
+def _mumps(A: Any) -> Any:
+    """Half of the matrix, as MUMPS takes symmetric ones; METIS orders it where it is there."""
+    import mumps
+
+    context = mumps.Context()
+    context.set_matrix(A, symmetric=True)
+    context.factor()
+
+    def solver(_: Any, b: Any, **_options: Any) -> Any:
+        return context.solve(b)
+
+    return solver
+
+
+def _cholmod(A: Any) -> Any:
+    """Factor by `cho_factor`, which scikit-sparse has from 0.5 on."""
+    from sksparse.cholmod import cho_factor
+
+    factor = cho_factor(A.tocsc())
+
+    def solver(_: Any, b: Any, **_options: Any) -> Any:
+        return factor.solve(b)
+
+    return solver
 
 
 def _amg(A: Any, nodes: Any, clock: Clock) -> Any:

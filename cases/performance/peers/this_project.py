@@ -18,6 +18,7 @@ INSTALL = "pip install 'fe-drivetrain[pardiso]'"
 VARIANTS = {
     "auto": ("auto", "chosen", "common"),
     "multigrid": ("multigrid", "iterative", "common"),
+    "schwarz": ("Schwarz", "iterative", "common"),
     "pardiso": ("PARDISO", "direct", "common"),
     "superlu": ("SuperLU", "direct", "common"),
 }

@@ -34,6 +34,7 @@ from .moving_turbine import energy_account as energy_account
 from .moving_turbine import simulate as simulate
 from .moving_turbine import turbine_histories as turbine_histories
 from .moving_turbine import turbine_history as turbine_history
+from .openfast_output import openfast_channels as openfast_channels
 from .point_loads import PointLoads as PointLoads
 from .recorded import Recorded as Recorded
 from .recorded import read_recorded as read_recorded
