@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
-from fe_drivetrain.bearing.tolerances import ClearanceClass, Limits
+from fe_drivetrain.bearing.tolerances import ClearanceClass, Limits, class_parts
 from fe_drivetrain.common.strict_yaml import no_truth_value
 
 Deviation = Annotated[float, Field(ge=-5e-3, le=5e-3)]
@@ -69,7 +76,9 @@ class Fit(_Keys):
 
     @field_validator("shaft", "housing", "bore", "outside")
     @classmethod
-    def _in_order(cls, value: object) -> object:
+    def _known(cls, value: object, info: ValidationInfo) -> object:
+        if isinstance(value, str):
+            class_parts(value, "shaft" if info.field_name == "shaft" else "housing")
         if isinstance(value, tuple) and value[0] > value[1]:
             raise ValueError(f"{list(value)} must be the least and the most, in this order")
         return value

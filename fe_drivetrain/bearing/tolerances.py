@@ -59,7 +59,7 @@ def shaft_limits(tolerance: str, diameter: float) -> Limits:
     InputError
         There is no such class here, or not for this diameter.
     """
-    letter, grade = _parts(tolerance, "shaft")
+    letter, grade = class_parts(tolerance, "shaft")
     at, width = _step(diameter, tolerance), _width(tolerance, grade, diameter)
     data = _data("iso_286")
     if letter == "h":
@@ -94,7 +94,7 @@ def housing_limits(tolerance: str, diameter: float) -> Limits:
     InputError
         There is no such class here, or not for this diameter.
     """
-    letter, grade = _parts(tolerance, "housing")
+    letter, grade = class_parts(tolerance, "housing")
     width = _width(tolerance, grade, diameter)
     small = letter.lower()
     if small in ("e", "f", "g", "h", "js"):
@@ -158,8 +158,21 @@ def class_clearance(kind: str, name: ClearanceClass, bore: float) -> Limits:
     return Limits(*(MICRON * one for one in pair))
 
 
-def _parts(tolerance: str, of: Literal["shaft", "housing"]) -> tuple[str, int]:
-    """Letter and grade of a tolerance class."""
+def class_parts(tolerance: str, of: Literal["shaft", "housing"]) -> tuple[str, int]:
+    """Letter and grade of a tolerance class.
+
+    Parameters
+    ----------
+    tolerance : str
+        Class, as ``"m6"``.
+    of : {"shaft", "housing"}
+        What it is of.
+
+    Raises
+    ------
+    InputError
+        There is no such class here.
+    """
     letters = "e|f|g|h|js|k|m|n|p|r"
     grades = "[4-9]"
     if of == "housing":

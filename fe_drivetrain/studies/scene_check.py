@@ -115,8 +115,9 @@ def check(
     misfits = [one.misfit for one in named.values()]
     for unused in catalogues_not_used(catalogues, {name: one.name for name, one in named.items()}):
         found.note(unused)
-    model = checked_model(steps, scene)
     found.about(scene)
+    clearances = _clearances(found, scene, named)
+    model = checked_model(steps, scene)
     found.assume_all(left_out(scene))
     found.seed = None
     parts = {name: float(mass.sum()) for name, mass in model.part_mass.items()}
@@ -128,7 +129,7 @@ def check(
     return CheckResult(
         parts=parts,
         described=description(model)
-        | _clearances(found, scene, named)
+        | clearances
         | thermal_tables(scene)
         | (turning_tables(turning) if turning else {}),
         costs=costs,

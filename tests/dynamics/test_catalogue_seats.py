@@ -6,8 +6,9 @@ import pytest
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.drivetrain_file.turning_parts import BearingData
 from fe_drivetrain.dynamics.bodies.advice import RUNGS, Operation, Rung
-from fe_drivetrain.dynamics.bodies.catalogue_seats import catalogued, on_catalogue
+from fe_drivetrain.dynamics.bodies.catalogue_seats import bearing_of, catalogued, on_catalogue
 from fe_drivetrain.dynamics.bodies.condensed_rungs import ON_ROLLERS, Rungs, with_rollers
 from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
 from fe_drivetrain.dynamics.bodies.mesh_loads import MeshResponses, with_slices
@@ -131,3 +132,18 @@ def test_a_lifted_rotor_is_one_without_weight() -> None:
 def test_a_ladder_without_entries_has_no_rollers() -> None:
     with pytest.raises(InputError, match=r"no bearing of .* has a catalogue entry and a load"):
         with_rollers(Rungs((RIGID,), {}), rolling({}))
+
+
+def test_a_row_s_mounting_gives_its_rollers_their_clearance() -> None:
+    """That of the mounted bearing, per half of the diameter; beside a clearance it is refused."""
+    row = {
+        "name": "b",
+        "holds": "shaft",
+        "stiffness": [0.0, 1e9, 1e9, 0.0, 0.0, 0.0],
+        "catalogue": "cylindrical_nu2220",
+    }
+    mounting = {"mounted_clearance": [40e-6, 60e-6]}
+    found = bearing_of(BearingData.model_validate({**row, "mounting": mounting}))
+    assert found.rows[0].clearance == pytest.approx(25e-6)
+    with pytest.raises(InputError, match="leave one out"):
+        BearingData.model_validate({**row, "mounting": mounting, "clearance": 1e-5})
