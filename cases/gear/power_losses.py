@@ -210,7 +210,7 @@ def answer(page: Page, chosen: ChosenDrivetrain, losses: DrivetrainLosses) -> No
             "or teeth nothing is counted: "
             + (", ".join(losses.left_out) if losses.left_out else "none here")
             + ".",
-            "No measured efficiency of this machine is public: the band is the difference of "
+            "No measured efficiency of the machine stands beside it: the band is the difference of "
             "models.",
         ],
     )

@@ -175,5 +175,5 @@ def answer(page: Page, low: float, high: float, apart: tuple[float, float]) -> N
             page.value("the same up to 1e8 mm2/s 1/min", apart[1]),
         ],
         hero=HERO,
-        cautions=["Measured moments beyond these bounds scatter by more than models differ."],
+        cautions=["No measurement stands behind the bounds: they are of the published formulas."],
     )

@@ -8,7 +8,7 @@ from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.report.suite.run import Run
 from fe_drivetrain.studies.gear_ratings import GearsResult
 
-LOSS_TABLES = ("losses", "torque along the shafts", "loss levels", "losses over torque")
+LOSS_TABLES = ("losses", "shaft_torques", "loss_levels", "losses_over_torque")
 _TABLES = ("gears", "meshes", "levels", "sharing", "face", "ring", "spectrum", *LOSS_TABLES)
 
 

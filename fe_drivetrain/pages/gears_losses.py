@@ -26,14 +26,12 @@ def losses_section(page: Page, result: GearsResult) -> None:
     page.table(
         "Heat of each part at the reference torque, and over the life", result.tables["losses"]
     )
-    page.table(
-        "Torque along the shafts at the reference torque", result.tables["torque along the shafts"]
-    )
+    page.table("Torque along the shafts at the reference torque", result.tables["shaft_torques"])
     over = efficiency_chart(losses)
     if over is not None:
         page.add(over)
-        page.table("Losses over the torque spectrum", result.tables["losses over torque"])
-    page.table("Levels of the losses", result.tables["loss levels"])
+        page.table("Losses over the torque spectrum", result.tables["losses_over_torque"])
+    page.table("Levels of the losses", result.tables["loss_levels"])
     others = [one for one in losses.levels if one.name != ANSWER and one.difference != 0.0]
     if others:
         page.chart(

@@ -166,7 +166,7 @@ def drivetrain_losses(
     machine = train.machine
     film = Film(1e-6 * oil.lubricant.viscosity)
     bearings, unknown = lossy_bearings(machine, film)
-    rung = _statics_rung(train.rungs)
+    rung = _statics_rung(train)
     reactions = BearingModel(machine, rung.level, flexible=rung.flexible).reactions()
     teeth = [_lossy(mesh) for mesh in meshes.values()]
     seals = _seals(drivetrain, machine)
@@ -213,6 +213,7 @@ def check_losses(drivetrain: Drivetrain, train: GearTrain, grade: float | None) 
             f"losses of {train.machine.title!r} need the speed of the rotor: give "
             "operation.rotor_speed in the file"
         )
+    _statics_rung(train)
     operation = drivetrain.operation
     stated = None if operation is None else operation.lubricant
     name = stated if grade is None else f"VG {grade:g}"
@@ -292,13 +293,13 @@ def _lossy(mesh: GearMesh) -> LossyMesh:
     )
 
 
-def _statics_rung(rungs: Sequence[Rung]) -> Rung:
+def _statics_rung(train: GearTrain) -> Rung:
     """The finest plain level that has forces of bearings."""
-    known = [one for one in rungs if one.level is not Level.TORSIONAL and not one.rollers]
+    known = [r for r in train.rungs if r.level is not Level.TORSIONAL and not r.rollers]
     if not known:
         raise InputError(
             "losses of bearings need their loads, and the file states what turns alone: give "
-            "lengths, masses and stiffnesses of bearings"
+            f"{', '.join(train.machine.not_given)}"
         )
     return known[-1]
 

@@ -62,9 +62,9 @@ def state_losses(found: Findings, losses: DrivetrainLosses) -> None:
         basis="self-consistency",
     )
     found.data("losses", part_rows(losses))
-    found.data("torque along the shafts", shaft_rows(losses))
-    found.data("loss levels", level_rows(losses))
-    found.data("losses over torque", torque_rows(losses))
+    found.data("shaft_torques", shaft_rows(losses))
+    found.data("loss_levels", level_rows(losses))
+    found.data("losses_over_torque", torque_rows(losses))
     _cautions(found, losses)
     _assumptions(found, losses)
 

@@ -7,6 +7,7 @@ import pytest
 
 from fe_drivetrain import read_drivetrain
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.reading import parse_drivetrain
 from fe_drivetrain.dynamics.bodies.bearing_reactions import bearing_reactions
 from fe_drivetrain.dynamics.bodies.power_losses import Film, LossModel
 from fe_drivetrain.gear.losses import mean_friction, tooth_loss_factor
@@ -190,3 +191,24 @@ def test_a_mesh_behind_losses_loses_less() -> None:
     # mu goes with the torque to the power 0.2, so that the loss goes with the power 1.2
     left = 1.0 - behind.taken[0, 0] / 3e5
     assert behind.taken[1, 0] / alone.taken[0, 0] == pytest.approx(left**1.2)
+
+
+def test_a_drivetrain_that_only_turns_is_refused_before_any_work() -> None:
+    drivetrain = parse_drivetrain(ONLY_TURNS)
+    with pytest.raises(InputError, match="states what turns alone"):
+        prepared(drivetrain, None, OPTIONS, GearLoading((), None, None, None, False))
+
+
+ONLY_TURNS = """
+title: Turbine of a user
+rotor: {inertia: 5.0e5}
+shaft: {name: slow, torsion: 3.0e7}
+gearbox:
+  stages:
+    - {kind: parallel, teeth: {gear: 88, pinion: 22}, stiffness_of: axis, gear: {inertia: 20},
+       pinion: {inertia: 0.3}, stiffness: 5.0e7}
+  shafts:
+    - {name: quick, torsion: 2.0e6}
+generator: {inertia: 30}
+operation: {rated_power: 7.5e5, rotor_speed: [1.0, 2.3]}
+"""

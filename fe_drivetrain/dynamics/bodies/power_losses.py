@@ -205,7 +205,9 @@ class Losses:
         driven = self.entering > 0.0
         over = np.where(driven, self.entering, np.minimum(self.leaving, 0.0))
         under = np.where(driven, self.leaving, self.entering)
-        return np.divide(under, over, out=np.full(len(over), np.nan), where=over != 0.0)
+        found = np.full(len(over), np.nan)
+        np.divide(under, over, out=found, where=over != 0.0)
+        return found
 
     def along(self, places: Sequence[float]) -> Floats:
         """Torque (k, n) at the rotor's speed that is left behind the parts up to each place [N m].
