@@ -214,7 +214,9 @@ def _solved(
         found, vectors = np.linalg.eig(
             np.block([[np.zeros((n, n)), np.eye(n)], [-mass / unit**2, rates]])
         )
-        return found * unit / size, vectors
+        return np.asarray(found * (unit / size), dtype=np.complex128), np.asarray(
+            vectors, dtype=np.complex128
+        )
 
     try:
         found, vectors = reciprocal(size)
