@@ -20,7 +20,7 @@ VARIANTS = {
     "sparse_lu": ("Eigen's LU", "direct", "4 points"),
 }
 """The wheel's solvers: PARDISO and CHOLMOD are not built into it."""
-TOLERANCE = 1e-5
+TOLERANCE = 1e-6
 
 SOLVERS = {
     "amgcl": f"""{{

@@ -17,7 +17,7 @@ VARIANTS = {
     "pardiso": ("PARDISO", "direct", "common"),
 }
 """The wheel is MFEM's serial build: without hypre, SuiteSparse and MUMPS, and with one thread."""
-TOLERANCE = 1e-5
+TOLERANCE = 1e-6
 
 VTK_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
 
