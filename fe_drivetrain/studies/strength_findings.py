@@ -292,7 +292,7 @@ def _answer(
         *_safety(found, f"S_D of {tired.name}", tired.fatigue, required[0]),
         *_safety(found, f"S_F of {yields.name}", yields.static, required[1]),
     ]
-    weak = [one.name for one in figures if one.status == "bad"]
+    weak = [one for one in figures if one.status == "bad"]
     figures.append(found.judged(f"local stress at {_most(sections).name}"))
     if hours:
         figures.append(
@@ -306,10 +306,14 @@ def _answer(
             if least and np.isfinite(safety.value):
                 figure = _joint_figure(found, f"safety of {one.name} against {word}", safety, least)
                 figures.append(figure)
-                weak += [figure.name] if figure.status == "bad" else []
+                weak += [figure] if figure.status == "bad" else []
     reserve = f"S_D\u00a0{_size(tired.fatigue)} where {formatted(required[0])} is required"
     if weak:
-        verdict = f"The shaft is too weak: {weak[0]} is too low; {tired.name} has {reserve}."
+        worst = min(weak, key=lambda one: one.value / (one.limit or 1.0))
+        verdict = (
+            f"The shaft is too weak: {worst.name} is {formatted(worst.value, 3)} where "
+            f"{formatted(worst.limit or 0.0)} is required."
+        )
     else:
         static = f"against yielding S_F\u00a0{_size(yields.static)}"
         verdict = f"The {tired.name} decides: {reserve}; {static}."
