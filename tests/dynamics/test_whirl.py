@@ -351,7 +351,7 @@ def test_ross_has_the_same_critical_speeds_and_frequencies() -> None:
         modes = whirl_modes(own, speed, 6).values.imag
         values = np.linalg.eigvals(np.asarray(theirs.A(speed))).imag
         for mode in modes:
-            assert np.abs(values / mode - 1).min() < 2e-3
+            assert np.abs(values / mode - 1).min() < 1e-9
 
 
 @pytest.mark.needs("exudyn")
