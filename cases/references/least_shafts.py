@@ -43,8 +43,8 @@ class LeastShaft:
 
 
 def bending_stiffness(
-    lengths: Sequence[float],
-    outer: Sequence[float],
+    lengths: Sequence[float] | Floats,
+    outer: Sequence[float] | Floats,
     bores: Sequence[float] | Floats,
     modulus: float,
 ) -> float:

@@ -2,8 +2,9 @@
 
 Cheap quantities are multiplied by the ratio that the better level gave at the last design, and the
 search goes on from there, until both agree (multiplicative correction: Alexandrov et al. 2001, J.
-Aircraft 38(6), with ratios that stay as they are between two checks). The cheap level gives all
-gradients, the better one a few values.
+Aircraft 38(6)). How the ratio changes from design to design is learned from the checks themselves
+(secants: Broyden 1965, Math. Comput. 19). The cheap level gives all gradients, the better one a few
+values.
 """
 
 from __future__ import annotations
@@ -34,10 +35,66 @@ KEPT = 0.5 * MARGIN
 """Share of a limit that a search may leave of its margin."""
 
 _LEAST = 1e-12  # of a limit: what is less counts as this
+_STILL = 1e-6  # of the ranges: a move that is less tells nothing of how ratios change
 _UNBUILT = 10.0  # value and limits of what cannot be built: worse than any design nearby
 
-Ratios = Mapping[str, Floats]
-"""Of the better level to the cheap one, by quantity."""
+
+@dataclass(frozen=True, eq=False)
+class Correction:
+    """Ratio of the better level to the cheap one, near the design that was checked last.
+
+    Attributes
+    ----------
+    at : Floats
+        (d,) that design.
+    logs : Mapping[str, Floats]
+        (k,) logarithm of the ratio there, by quantity.
+    slopes : Mapping[str, Floats]
+        (k, d) of the logarithm over the ranges, as far as designs so far tell.
+    """
+
+    at: Floats
+    logs: Mapping[str, Floats]
+    slopes: Mapping[str, Floats]
+
+    __repr__ = short_repr
+
+    def factors(self, at: Floats) -> dict[str, Floats]:
+        """Ratio of each quantity at a place."""
+        moved = at - self.at
+        return {name: np.exp(log + self.slopes[name] @ moved) for name, log in self.logs.items()}
+
+
+def correction(
+    before: Correction | None,
+    at: Floats,
+    better: Mapping[str, Floats],
+    cheap: Mapping[str, Floats],
+) -> Correction:
+    """The correction after a check.
+
+    Parameters
+    ----------
+    before : Correction or None
+        That of the check before.
+    at : ndarray, (d,)
+        Design that was checked.
+    better, cheap : mapping of str to ndarray
+        Its quantities at both levels; where one is zero, there is no ratio.
+    """
+    logs, slopes = {}, {}
+    for name, values in better.items():
+        known = (values > 0.0) & (cheap[name] > 0.0)
+        ratio = np.divide(values, cheap[name], out=np.ones(len(values)), where=known)
+        logs[name] = np.log(ratio)
+        slopes[name] = np.zeros((len(values), len(at)))
+        if before is not None:
+            moved = at - before.at
+            slopes[name] = before.slopes[name]
+            if (size := float(moved @ moved)) > _STILL**2:
+                expected = before.logs[name] + before.slopes[name] @ moved
+                slopes[name] = slopes[name] + np.outer(logs[name] - expected, moved) / size
+    return Correction(at, logs, slopes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,15 +129,15 @@ class Problem:
         Limits.
     size : float
         Size of what shall be least, which values are relative to.
-    ratios : Mapping[str, Floats]
-        Corrections, see `Ratios`; empty for none.
+    corrected_by : Correction or None
+        Ratio of a better level to that of the designs.
     """
 
     trials: DesignTrials
     minimise: str
     limits: tuple[Limit, ...]
     size: float
-    ratios: Ratios
+    corrected_by: Correction | None = None
 
     __repr__ = short_repr
 
@@ -89,7 +146,10 @@ class Problem:
         found = self.trials.quantities(at)
         if found is None:
             return None
-        return {name: values * self.ratios.get(name, 1.0) for name, values in found.items()}
+        if self.corrected_by is None:
+            return found
+        factors = self.corrected_by.factors(at)
+        return {name: values * factors.get(name, 1.0) for name, values in found.items()}
 
     def functions(self, at: Floats) -> Floats:
         """Value and limits as `constrained_minimum` takes them, all relative."""

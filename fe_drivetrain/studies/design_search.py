@@ -23,6 +23,7 @@ from fe_drivetrain.studies.design_minima import (
     Problem,
     Trial,
     best_of,
+    correction,
     infeasible,
     minima_of,
 )
@@ -34,7 +35,7 @@ from fe_drivetrain.studies.result import Result
 
 STARTS = 4
 _ROUNDS = 8  # of checks and corrections
-_SETTLED = 1e-4  # of its range: a value that moves less does not move
+_SETTLED = 2e-4  # of the least value: a search that gains less has ended
 _FRONT = np.geomspace(0.6, 1.6, 9)  # of the limit whose front is shown
 
 
@@ -224,7 +225,7 @@ def _candidates(
     choices = request.choices()
     for number, choice in enumerate(choices, 1):
         trials = DesignTrials(asked, counts, choice)
-        problem = Problem(trials, request.minimise, request.limits, size, {})
+        problem = Problem(trials, request.minimise, request.limits, size)
         of = f"combination {number} of {len(choices)}, " if len(choices) > 1 else ""
         path: list[Trial] = []
         try:
@@ -272,6 +273,7 @@ def _corrected(one: _Candidate, tolerance: float, report: Callable[[str], object
     """A candidate whose limits are kept at the level that is enough."""
     problem, minimum, path = one.problem, one.minimum, list(one.path)
     trials = problem.trials
+    best: _Candidate | None = None
     for number in range(1, _ROUNDS + 1):
         checked = checked_quantities(
             trials.asked,
@@ -281,20 +283,25 @@ def _corrected(one: _Candidate, tolerance: float, report: Callable[[str], object
         )
         cheap = trials.quantities(minimum.at)
         assert cheap is not None
-        ratios = {name: _ratio(of.values, cheap[name]) for name, of in checked.items()}
+        better = {name: of.values for name, of in checked.items()}
+        now = correction(problem.corrected_by, minimum.at, better, cheap)
         kept = all(
             problem.excess(limit, checked[limit.name].values).max() <= 0.0
             for limit in problem.limits
         )
-        problem = replace(problem, ratios=ratios)
-        before = minimum.at
+        problem = replace(problem, corrected_by=now)
+        before, values = minimum.at, problem.functions(minimum.at)
         (minimum,) = minima_of(problem, [before], _named(report, "corrected: "), path)
-        if minimum.violation > KEPT:
+        if minimum.violation > KEPT and best is None and not kept:
             raise infeasible(problem, minimum.at)
-        if kept and np.abs(minimum.at - before).max(initial=0.0) < _SETTLED:
+        if kept and (best is None or values[0] < best.minimum.values[0]):
             # what was checked is what is shown
-            shown = replace(minimum, at=before)
-            return replace(one, problem=problem, minimum=shown, path=path, checked=checked)
+            shown = replace(minimum, at=before, values=values)
+            best = replace(one, problem=problem, minimum=shown, path=path, checked=checked)
+        if kept and values[0] - minimum.values[0] < _SETTLED * values[0]:
+            break
+    if best is not None:
+        return best
     raise InputError(
         f"levels 1 and {', '.join({of.level for of in checked.values()})} do not agree on a design "
         f"after {_ROUNDS} rounds: make ranges narrower, or the tolerance larger"
@@ -308,11 +315,6 @@ def _named(report: Callable[[str], object], words: str) -> Progress:
         report(f"{words}{step}")
 
     return said
-
-
-def _ratio(better: Any, cheap: Any) -> Any:
-    """Of the better level to the cheap one; 1 where a value is zero."""
-    return np.where((cheap != 0.0) & (better != 0.0), better / np.where(cheap == 0, 1, cheap), 1.0)
 
 
 def _prices(best: _Candidate) -> dict[str, float]:

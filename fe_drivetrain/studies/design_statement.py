@@ -103,7 +103,7 @@ def state_search(
         )
     _explain(found, problem, minimum)
     found.data("design", design_rows(problem, minimum))
-    found.data("limits", limit_rows(problem, checked, prices, now))
+    found.data("limits", limit_rows(problem, minimum, checked, prices, now))
     _answer(found, problem, minimum, checked, prices, now)
 
 
@@ -213,6 +213,7 @@ def design_rows(problem: Problem, minimum: Minimum) -> list[Record]:
 
 def limit_rows(
     problem: Problem,
+    minimum: Minimum,
     checked: Mapping[str, CheckedQuantity],
     prices: Mapping[str, float],
     now: Mapping[str, Floats],
@@ -221,8 +222,8 @@ def limit_rows(
 
     Parameters
     ----------
-    problem : Problem
-        The search.
+    problem, minimum : Problem, Minimum
+        The search, and the design.
     checked, prices, now : mapping
         See `state_search`.
     """
@@ -234,7 +235,8 @@ def limit_rows(
     for limit in problem.limits:
         of, unit = checked[limit.name], limit.unit or units[limit.name]
         k, one = _worst(limit, of), limit.size(units[limit.name])
-        ratio = float(np.broadcast_to(problem.ratios.get(limit.name, 1.0), of.values.shape)[k])
+        own = problem.trials.quantities(minimum.at)
+        assert own is not None
         rows.append(
             {
                 "limit": str(limit),
@@ -243,7 +245,7 @@ def limit_rows(
                 "found": float(of.values[k]) / one,
                 "±": float(of.bands[k]) / one,
                 "level": of.level,
-                "level 1 says": float(of.values[k]) / ratio / one,
+                "level 1 says": float(own[limit.name][k]) / one,
                 f"one {unit} tighter costs [{shown or '-'}]": prices[str(limit)] / size,
             }
         )

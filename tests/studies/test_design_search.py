@@ -55,7 +55,7 @@ def _problem(scene: Scene, minimise: str, limits: list[str], **more: Any) -> Pro
     asked = DesignQuantities(scene, request)
     now = asked.values(scene)
     trials = DesignTrials(asked, {name: len(values) for name, values in now.items()}, {})
-    return Problem(trials, minimise, request.limits, float(now[minimise][0]), {})
+    return Problem(trials, minimise, request.limits, float(now[minimise][0]))
 
 
 @pytest.fixture(scope="module")
