@@ -275,26 +275,6 @@ def _key(model: LinearModel) -> tuple[bytes, bytes]:
     return model.matrix.tobytes(), model.constant.tobytes()
 
 
-def force_errors(
-    solid: LinearModel,
-    beam: LinearModel,
-    histories: Sequence[Floats],
-    share: Floats | None = None,
-) -> ForceErrors:
-    """Errors of a beam's resultant radial force; several beams by one `ForceComparison`.
-
-    Parameters
-    ----------
-    solid, beam : LinearModel
-        The reference and the model.
-    histories : sequence of ndarray, (n, 6)
-        Hub loads [N, N m].
-    share : ndarray, (m,), optional
-        What each history counts, their sum 1; all the same where not given.
-    """
-    return ForceComparison(histories, share).errors(solid, beam)
-
-
 def closed_form_rows(found: Mapping[str, ForceErrors]) -> list[Record]:
     """Records of the errors of closed forms.
 

@@ -13,8 +13,8 @@ from fe_drivetrain.studies.closed_forms import (
     PINNED,
     SIXBYSIX,
     SPRUNG,
+    ForceComparison,
     LinearModel,
-    force_errors,
 )
 from fe_drivetrain.studies.design_measures import load_errors
 from fe_drivetrain.turbine_loads.hub_loads import LoadHistory
@@ -86,7 +86,8 @@ def test_closed_forms_on_the_seat_stand_beside_those_of_the_unit(
     # the longer history counts three times as much
     solid = LinearModel.of_fe(studied.model.scene, studied.response)
     alone = [
-        force_errors(solid, studied.closed_form_models[SIXBYSIX], [h.loads]) for h in histories
+        ForceComparison([h.loads]).errors(solid, studied.closed_form_models[SIXBYSIX])
+        for h in histories
     ]
     expected = 0.25 * alone[0].mean_error_percent + 0.75 * alone[1].mean_error_percent
     assert forms[SIXBYSIX].mean_error_percent == pytest.approx(expected, rel=1e-12)
@@ -105,7 +106,7 @@ def test_errors_of_forces_are_those_of_their_samples() -> None:
     twice = LinearModel(2.0 * np.eye(6), np.zeros(6))
     history: Floats = np.zeros((4, 6))
     history[:, 1] = [3.0, 0.0, -5.0, 4.0]
-    found = force_errors(solid, twice, [history])
+    found = ForceComparison([history]).errors(solid, twice)
     assert found.mean_error_percent == pytest.approx(100.0)
     assert found.relative_error_percent == pytest.approx(100.0)
     assert found.correlation == pytest.approx(1.0)
