@@ -15,7 +15,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.bearing.catalogue import Entry, Kind
+from fe_drivetrain.bearing.catalogue import Entry
+from fe_drivetrain.bearing.designations import Kind
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
@@ -150,7 +151,8 @@ def friction_bearing(name: str, entry: Entry) -> FrictionBearing:
     Returns
     -------
     bearing : FrictionBearing
-        Its mean diameter is the pitch diameter of the entry; without a bore, rings are as thick as
+        Of an entry by its catalogue's page, bore and outside diameter are those of the page. Of
+        others the mean diameter is the pitch diameter; without a bore, rings are as thick as
         rolling elements of `ROLLER_SHARE` leave them.
     """
     mean = entry.pitch_diameter
@@ -158,6 +160,8 @@ def friction_bearing(name: str, entry: Entry) -> FrictionBearing:
     bore = mean - across if entry.bore is None else entry.bore
     angle = radians(entry.contact_angle or 0.0)
     outside = 2.0 * mean - bore
+    if entry.page is not None:
+        bore, outside, _ = entry.page.sizes
     series, seal = entry.series, entry.seal_diameter
     return FrictionBearing(name, entry.kind, bore, outside, angle, series, seal)
 
