@@ -11,7 +11,6 @@ from . import implied_shafts as implied_shafts
 from . import independent_torsion as independent_torsion
 from . import interference_fits as interference_fits
 from . import layers as layers
-from . import least_shafts as least_shafts
 from . import loaded_blocks as loaded_blocks
 from . import locking_bars as locking_bars
 from . import locking_solids as locking_solids

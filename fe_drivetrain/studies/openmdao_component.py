@@ -23,7 +23,7 @@ _UNITS |= {"N m": "N*m", "N m/rad": "N*m/rad", "Hz": "Hz", "kg m^2": "kg*m**2"}
 
 
 def design_component(drivetrain: Drivetrain, request: DesignRequest, model: str = "cheap") -> Any:
-    """Quantities of a design as an `openmdao.api.ExplicitComponent`.
+    """Quantities of a design as an ``openmdao.api.ExplicitComponent``.
 
     Inputs are the keys that have a range, with dots replaced by colons, as in
     ``shaft:sections:0:inner_diameter``; outputs are what the request shall minimise and limits,

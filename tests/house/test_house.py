@@ -99,6 +99,7 @@ FOR_USERS = {
     "bearing.tables": "bearing.md",
     "export.formats.windio": "how-to/shafts-of-a-gearbox.md",
     "gear.coupled_slices": "gear_rating.md",
+    "studies.openmdao_component": "python.md",
     "turbine_loads.hub_loads.events": "turbine.md",
     "turbine_loads.hub_loads.wind_boxes": "loads.md",
     # loads at the interfaces of any scene, from a level of the ladder
