@@ -1,5 +1,7 @@
 """A design as an OpenMDAO component: its driver finds what the search finds."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from coarse_scenes import coarse_scene
@@ -15,7 +17,10 @@ def _request(**more: object) -> object:
 
 
 @pytest.mark.needs("openmdao")
-def test_a_driver_of_openmdao_finds_the_bore_of_the_closed_form() -> None:
+def test_a_driver_of_openmdao_finds_the_bore_of_the_closed_form(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)  # OpenMDAO writes reports beside
     import openmdao.api as om
 
     scene = coarse_scene("bonded")
