@@ -90,3 +90,11 @@ def test_without_variables_the_start_is_the_answer():
     found = constrained_minimum(lambda _: np.array([2.0, -0.1]), np.zeros(0))
     assert found.violation == -0.1
     assert found.residual == 0.0
+
+
+def test_multipliers_of_ends_have_their_sign():
+    found = constrained_minimum(
+        lambda at: np.array([1.0 + at[0] - 2.0 * at[1], -1.0]), np.array([0.4, 0.6])
+    )
+    assert found.at == pytest.approx([0.0, 1.0], abs=1e-9)
+    assert found.at_ends == pytest.approx([-1.0, 2.0], rel=1e-6)

@@ -213,7 +213,8 @@ def _weight_in_front(shaft: Shaft, x: float) -> tuple[float, float]:
         if segment.centre is None:
             share = min((x - a[0]) / (b[0] - a[0]), 1.0) if b[0] != a[0] else 1.0
             t = share * (nodes + 1.0) / 2.0
-            at, rate = a[0] + t * (b[0] - a[0]), share * (b[0] - a[0]) / 2.0
+            at = a[0] + t * (b[0] - a[0])
+            rate = np.full(len(t), share * (b[0] - a[0]) / 2.0)
             radius = a[1] + t * (b[1] - a[1])
         else:
             at, radius, rate = _along_arc(segment.start, segment.end, segment.centre, nodes, x)
