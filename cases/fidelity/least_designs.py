@@ -122,8 +122,7 @@ def check_gradients(run: Run, page: Page, limited: Problem) -> None:
         rows,
         "step over the range",
         "error of the gradient",
-        log_x=True,
-        log_y=True,
+        log="xy",
     )
     errors = column(rows, "error of the gradient")
     low, high = safe_range(steps, errors, FOUR_DIGITS)
@@ -186,7 +185,7 @@ def show_levels(page: Page, levels: list[Record]) -> None:
         levels[:-1],
         "processor time [s]",
         "error of the mass [%]",
-        log_y=True,
+        log="y",
     )
     page.table("What each search costs", levels)
     page.at_most(

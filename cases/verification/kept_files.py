@@ -20,14 +20,15 @@ from fe_drivetrain.common import CACHE_VARIABLE, Floats, silent
 from fe_drivetrain.common.array_records import as_arrays
 from fe_drivetrain.common.cache import Kind
 from fe_drivetrain.common.kept_files import UnfitError, read_kept
-from fe_drivetrain.drivetrain_file import library_scene
+from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
 from fe_drivetrain.elasticity.mesh import cached_mesh
 from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 from fe_drivetrain.report import bars
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run, column
 from fe_drivetrain.shafts.uncertainty.kept_rows import evaluated_rows
-from fe_drivetrain.studies import GearOptions
+from fe_drivetrain.studies import GearOptions, StrengthOptions
 from fe_drivetrain.studies.gear_spectra import Reading as GearReading
 from fe_drivetrain.studies.gear_spectra import file_spectrum
 from fe_drivetrain.studies.life_digest import Reading
@@ -35,6 +36,8 @@ from fe_drivetrain.studies.life_digest import kept_digest as life_digest
 from fe_drivetrain.studies.load_digest import LoadOptions
 from fe_drivetrain.studies.load_reactions import kept_digest as loads_digest
 from fe_drivetrain.studies.rolling_bearings import Choices, bearings_of
+from fe_drivetrain.studies.strength_sections import strength_shaft
+from fe_drivetrain.studies.strength_sums import file_sums
 from fe_drivetrain.turbine_loads.hub_loads import Condition, hub_load_set, write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.recorded import OWN_NAMES
 
@@ -45,6 +48,7 @@ SHAFT = Shaft(front=0.0, sections=(Section(length=0.6, outer_diameter=0.3, inner
 WIND = Condition(12.0, "low", 0.2, 1)
 DURATION, RATE = 20.0, 10.0  # s, Hz
 SCENE, ENTRY = "main_bearing_bonded", "bearing_s_o20"
+STEEL = {"steel": "quenched and tempered", "tensile_strength": 7.5e8, "yield_strength": 5.5e8}
 
 FATES = "What became of bits turned in kept files: noticed, or read with another value"
 COUNTED = "counted: a damage is noticed, or what is read is compared with what was written, bit by "
@@ -114,6 +118,17 @@ class Maker:
         found = file_spectrum(silent, self.loads, reading, resume=True)
         return {name: array.tobytes() for name, array in as_arrays(found).items()}
 
+    def stress_cycles(self) -> Any:
+        """What `strength` sums up of a file."""
+        options = StrengthOptions(
+            rotor_speed_rpm=12.0, housings=False, elastic=False, weight=False, points=4
+        )
+        scene = change_scene(library_scene(SCENE), {"strength": STEEL})
+        assert isinstance(scene, Scene)
+        shaft = strength_shaft(scene, options, Steps(silent))
+        found = file_sums(silent, self.loads, shaft.model, options, shaft.content, resume=True)
+        return {name: array.tobytes() for name, array in as_arrays(found).items()}
+
     def by_kind(self) -> dict[Kind, Callable[[], Any]]:
         """What makes each kind of kept file."""
         return {
@@ -123,6 +138,7 @@ class Maker:
             "life-digests": self.damage,
             "load-digests": self.counted_loads,
             "meshes": self.mesh,
+            "shaft-strength": self.stress_cycles,
             "solutions": self.samples,
         }
 
