@@ -117,3 +117,13 @@ def leave_a_child(report: Progress, folder: Path) -> None:
     child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
     (folder / str(child.pid)).touch()
     child.wait()
+
+
+def hold_a_lock(report: Progress) -> None:
+    """Leaves a lock that only the end of its process frees."""
+    import multiprocessing
+
+    _held.append(multiprocessing.get_context("spawn").Lock())
+
+
+_held: list[object] = []

@@ -28,6 +28,7 @@ from fe_drivetrain.common.threads import CORES_VARIABLE
 
 _SPAWN = multiprocessing.get_context("spawn")
 _STARTING = threading.Lock()
+_QUIET_TRACKER = "ignore::UserWarning:multiprocessing.resource_tracker"
 _LAST_LINES = 5
 _HELD_BACK = {number for number in signal.Signals if number.name in ("SIGINT", "SIGPIPE")}
 
@@ -103,20 +104,23 @@ def _inherited() -> Iterator[None]:
 
     A module in the user's current folder hides none of ours, the user's script is not run again,
     and Ctrl-C does not reach it. Threads of the executor inherit, too: writing to a process that
-    has died must not end this one, even where a library has changed what SIGPIPE does.
+    has died must not end this one, even where a library has changed what SIGPIPE does. What a
+    process that is killed leaves behind is freed by multiprocessing's own, which need not say so.
     """
     with _STARTING:
         main, before = sys.modules["__main__"], os.environ.get("PYTHONSAFEPATH")
+        options = sys.warnoptions
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, ())
         sys.modules["__main__"] = ModuleType("__main__")
         os.environ["PYTHONSAFEPATH"] = "1"
         try:
+            sys.warnoptions = [*options, _QUIET_TRACKER]
             ensure_running()  # multiprocessing's own process, at whose start SIGINT is let in again
             signal.pthread_sigmask(signal.SIG_BLOCK, _HELD_BACK)
             yield
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-            sys.modules["__main__"] = main
+            sys.modules["__main__"], sys.warnoptions = main, options
             del os.environ["PYTHONSAFEPATH"]
             if before is not None:
                 os.environ["PYTHONSAFEPATH"] = before

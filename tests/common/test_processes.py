@@ -379,6 +379,17 @@ def test_what_a_job_prints_is_no_answer(capfd: pytest.CaptureFixture[str]) -> No
     assert "raw out" in said.err
 
 
+def test_locks_of_an_ended_process_are_freed_without_a_word() -> None:
+    program = """
+from jobs import hold_a_lock
+from fe_drivetrain.common.processes import Processes
+with Processes(2) as processes:
+    processes.start(hold_a_lock)
+"""
+    done = run_python("-c", program)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 # --- from outside, as typed on the command line --------------------------------------------------
 
 JOBS = """
