@@ -90,7 +90,7 @@ class CataloguePage(BaseModel):
     D: float | None = _length("outside diameter; by the designation where left out")
     B: float | None = _length("width; by the designation where left out")
     T: float | None = _length("width of a tapered bearing over both rings")
-    e: float | None = Field(default=None, gt=0, lt=3, description="limit of F_a / F_r [-]")
+    e: float | None = Field(default=None, ge=0.1, lt=3, description="limit of F_a / F_r [-]")
     Y: float | None = Field(default=None, gt=0, le=20, description="axial factor of one row [-]")
     Y1: float | None = Field(
         default=None, gt=0, le=20, description="axial factor of two rows up to e [-]"

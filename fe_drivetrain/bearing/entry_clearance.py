@@ -51,7 +51,7 @@ def entry_seats(
     Raises
     ------
     InputError
-        The entry has no bore, or diameters leave no ring.
+        The entry has no bore, diameters leave no ring, or D is another than that of its page.
     """
     if entry.bore is None:
         raise InputError(
@@ -63,8 +63,14 @@ def entry_seats(
     across = entry.element_diameter * cos(tilt)
     inner, outer = entry.pitch_diameter - across, entry.pitch_diameter + across
     outside = None if fit is None else fit.outside_diameter
-    if outside is None and entry.page is not None:
-        outside = entry.page.sizes.outside
+    if entry.page is not None:
+        printed = entry.page.sizes.outside
+        if outside is not None and abs(outside / printed - 1.0) > 1e-3:
+            raise InputError(
+                f"mounting: fit.outside_diameter is {outside:g} m, but D of the page of "
+                f"{entry.title!r} is {printed:g} m: leave it out"
+            )
+        outside = printed
     if outside is None:
         outside = outer + (inner - entry.bore)
         assumed.append(

@@ -55,7 +55,7 @@ class Hub(Keys):
 #: What temperatures of parts are above.
 ASSEMBLED = "assembled"
 
-Temperature = Annotated[float, Field(ge=-60, le=250)]
+Temperature = Annotated[float, Field(ge=-60, le=250, strict=True)]
 
 Inertia = Annotated[float, Field(gt=0, le=MAX_INERTIA)]
 

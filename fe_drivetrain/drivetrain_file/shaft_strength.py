@@ -105,20 +105,21 @@ class ShaftStrength(Part):
     reference_diameter: float | None = dimension(
         None,
         of="diameter at which both were measured; that of the tables of DIN 743-3 where left out",
-        gt=0,
+        ge=5e-3,
+        le=10,
     )
     bending_limit: float | None = dimension(
         None,
         of="fatigue limit in reversed bending of a plain bar; 0.5 R_m",
         unit="Pa",
-        gt=0,
+        gt=1e7,
         le=2e9,
     )
     tension_limit: float | None = dimension(
-        None, of="fatigue limit in tension and compression; 0.4 R_m", unit="Pa", gt=0, le=2e9
+        None, of="fatigue limit in tension and compression; 0.4 R_m", unit="Pa", gt=1e7, le=2e9
     )
     torsion_limit: float | None = dimension(
-        None, of="fatigue limit in reversed torsion; 0.3 R_m", unit="Pa", gt=0, le=2e9
+        None, of="fatigue limit in reversed torsion; 0.3 R_m", unit="Pa", gt=1e7, le=2e9
     )
     roughness: float = dimension(
         12.5e-6, of="R_z of the surface", gt=0, le=1e-3, source="assumed: fine turned, 12.5 um"

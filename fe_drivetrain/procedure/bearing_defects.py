@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 
-from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
+from fe_drivetrain.bearing.catalogue import name_of, read_bearing_catalogue
 from fe_drivetrain.bearing.defect_frequencies import DefectFrequencies, defect_frequencies
 from fe_drivetrain.bearing.geometry import count
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
@@ -92,7 +92,8 @@ def bearing_defects(
     found, unknown = [], []
     for name, ratio in ratios.items():
         row = rows.get(name)
-        if row is None or row.catalogue not in known:
+        named = None if row is None else row.catalogue
+        if row is None or named is None or (isinstance(named, str) and named not in known):
             unknown.append(name)
             continue
         own = bearing_of(row, catalogues).rows
@@ -103,7 +104,7 @@ def bearing_defects(
         parts = tuple(name.replace(" pin", f" pin {k + 1}") for k in range(planets)) or (name,)
         found.append(
             BearingDefects(
-                name, str(row.catalogue), frequencies, len(own), count(own[0]), abs(ratio), parts
+                name, name_of(named), frequencies, len(own), count(own[0]), abs(ratio), parts
             )
         )
     return tuple(found), tuple(unknown)

@@ -213,6 +213,11 @@ class DesignQuantities:
         operation = self.drivetrain.operation
         if speed is None and operation is not None and operation.rotor_speed is not None:
             speed = float(operation.rotor_speed[1] * RPM)
+        if speed is not None and not speed > 0.0:
+            raise InputError(
+                f"{argument('LifeOptions.rotor_speed_rpm', speed)} 1/min, but life counts turns: "
+                "give a speed above 0"
+            )
         if request.hub_loads is not None:
             return _recorded_steps(where, request, speed)
         if not request.load:

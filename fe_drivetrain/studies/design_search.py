@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
@@ -177,6 +178,7 @@ def search(
     asked = DesignQuantities(drivetrain, request)
     with steps.step("the drivetrain as it is"):
         now = asked.values(drivetrain)
+    _require_single_values(request, now)
     size = float(now[request.minimise][0])
     if not size > 0.0:
         raise InputError(f"{request.minimise} is {size:g} and cannot be made less: ask for another")
@@ -208,6 +210,22 @@ def search(
         made=made,
         **found.frozen(steps.times, **_stated(request, tolerance, starts, front)),
     )
+
+
+def _require_single_values(request: DesignRequest, now: Mapping[str, Floats]) -> None:
+    """Refuse to minimise what has several values, and limits that mean nothing for such."""
+    if len(now[request.minimise]) > 1:
+        raise InputError(
+            f"{request.minimise} has {len(now[request.minimise])} values, of parts or points: give "
+            f"it a limit, as in '{request.minimise}<=VALUE', and minimise another quantity, or "
+            "name one part of it"
+        )
+    for limit in request.limits:
+        if limit.at_least and limit.name.partition(".")[0] == "stress":
+            raise InputError(
+                f"the limit {limit} asks for stress at every point of a section, some of which "
+                "carry nothing: give an upper limit, as in 'stress<=100 MPa'"
+            )
 
 
 def _candidates(

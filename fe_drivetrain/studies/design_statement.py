@@ -11,6 +11,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.comparison.constrained_minimum import ACTIVE, Minimum, slopes
 from fe_drivetrain.drivetrain_file.units import unit_of_key
+from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
@@ -23,7 +24,8 @@ BALANCED = 1e-3
 
 _SHOWN: Mapping[str, tuple[float, str]] = {"kg": (1e3, "t"), "m": (1e-3, "mm"), "-": (1.0, "")}
 _NOTHING = 1e-9  # of a gradient: a value that changes less changes nothing
-_FIGURES = 4
+_FIGURES = 6
+_VALUES = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +94,8 @@ def state_search(
     """
     asked = problem.trials.asked
     for limit in problem.limits:
-        _judge(found, limit, checked[limit.name], asked.units[limit.name])
+        label = _label(problem, limit)
+        _judge(found, label, limit, checked[limit.name], asked.units[limit.name])
     if len(minimum.at):
         found.at_most(
             "gradient that no limit balances, over the gradient",
@@ -112,12 +115,29 @@ def _worst(limit: Limit, of: CheckedQuantity) -> int:
     return int(of.values.argmin() if limit.at_least else of.values.argmax())
 
 
-def _judge(found: Findings, limit: Limit, of: CheckedQuantity, unit: str) -> None:
+def _label(problem: Problem, limit: Limit) -> str:
+    """Name of what a limit is of, and which one it is where there are two."""
+    if sum(one.name == limit.name for one in problem.limits) == 1:
+        return limit.name
+    return f"{limit.name}, {'least' if limit.at_least else 'largest'} allowed"
+
+
+def _found_values(found: Findings, problem: Problem, minimum: Minimum) -> list[KeyFigure]:
+    """Values of the design, those that are numbers; the table has the others, too."""
+    figures = []
+    for row in design_rows(problem, minimum):
+        value, now = row["found"], row["now"]
+        if isinstance(value, int | float) and isinstance(now, int | float):
+            figures.append(found.value(row["key"], float(value), beside=float(now), by="now"))
+    return figures[:_VALUES]
+
+
+def _judge(found: Findings, label: str, limit: Limit, of: CheckedQuantity, unit: str) -> None:
     size, k = limit.size(unit), _worst(limit, of)
     shown = limit.unit or unit
     judge = found.at_least if limit.at_least else found.at_most
     judge(
-        f"{limit.name} [{shown}]",
+        f"{label} [{shown}]",
         float(of.values[k]) / size,
         limit.value,
         band=float(of.bands[k]) / size or None,
@@ -152,7 +172,9 @@ def _answer(
         verdict += "no limit decides, only the ends of ranges."
     label = f"least {name} [{unit}]" if unit else f"least {name}"
     figures = [found.value(label, least, band or None, beside=before, by="now")]
-    figures += [found.judged(limit.name) for limit in problem.limits[:_FIGURES]]
+    figures += _found_values(found, problem, minimum)
+    figures += [found.judged(_label(problem, limit)) for limit in problem.limits]
+    figures = figures[:_FIGURES]
     if len(figures) < 3:
         figures.append(found.value("limits that decide", len(active)))
     cautions = []

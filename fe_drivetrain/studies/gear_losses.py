@@ -8,7 +8,13 @@ from time import process_time
 
 import numpy as np
 
-from fe_drivetrain.bearing.catalogue import Entry, read_bearing_catalogue
+from fe_drivetrain.bearing.catalogue import (
+    Entry,
+    Named,
+    fitted_entry,
+    read_bearing_catalogue,
+)
+from fe_drivetrain.bearing.catalogue_page import CataloguePage
 from fe_drivetrain.bearing_life.life.lubricants import GRADES, Lubricant
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
@@ -244,13 +250,18 @@ def lossy_bearings(
     grease = Film(1e-6 * GREASE.viscosity, "grease")
     found, unknown = [], []
     for name in ring_speeds(machine):
-        entry: Entry | None = known.get(str(rows[name].catalogue)) if name in rows else None
+        entry = _entry(rows[name].catalogue, known) if name in rows else None
         if entry is None:
             unknown.append(name)
             continue
         place = _place(held.get(name, name), shafts)
         found.append(LossyBearing(name, place, entry, grease if name in main else film))
     return tuple(found), tuple(unknown)
+
+
+def _entry(named: Named | None, known: Mapping[str, Entry]) -> Entry | None:
+    """The entry of a catalogue's name or page; None where there is none."""
+    return fitted_entry(named) if isinstance(named, CataloguePage) else known.get(str(named))
 
 
 def _seals(drivetrain: Drivetrain, machine: MachineTable) -> list[LossySeal]:

@@ -13,6 +13,7 @@ from fe_drivetrain.bearing_life.life.lubricants import Lubricant
 from fe_drivetrain.bearing_life.life.reference_life import RINGS
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.procedure.failure_modes import BEARING_RATING, TORQUE_AND_BENDING
 from fe_drivetrain.report.number_text import value_with_band
 from fe_drivetrain.report.suite.findings import Findings
@@ -22,6 +23,7 @@ from fe_drivetrain.studies.life_assumptions import in_words, in_years
 from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.life_sums import BearingLife, scatter
 from fe_drivetrain.studies.rolling_bearings import rollers_in_words, row_names
+from fe_drivetrain.studies.thermal_tables import thermal_caution
 from fe_drivetrain.studies.unused import choices_not_used, speed_not_used
 from fe_drivetrain.turbine_loads.histories.sites import Site
 from fe_drivetrain.turbine_loads.hub_loads.recorded import short_name
@@ -96,7 +98,8 @@ def _insides(found: Findings, lives: Sequence[BearingLife]) -> None:
         ends = f"{in_years(low)} to {in_years(high)}"
         found.note(
             f"Bearing {life.name}: its page does not print what is inside. With {band.insides} "
-            f"insides that fit it, L10mr is {ends}; give what is known of the inside to narrow it."
+            f"insides that fit it, L10mr is {ends}; give what is known of the inside to narrow it.",
+            first=high - low > life.years["L10mr"],
         )
 
 
@@ -183,6 +186,8 @@ def cautions(
     for life in _spoken_of(lives):
         if sentence := in_words(life.name, life.years["L10mr"], life.assumptions):
             found.note(sentence)
+    if isinstance(drivetrain, Scene) and (heat := thermal_caution(drivetrain)):
+        found.note(f"{heat} No life has these.", first=True)
     files = [one.file for one in lives[0].files]
     vertical = {short_name(one.file, files): one.vertical for one in lives[0].files}
     if unlike := different_turbines(vertical):

@@ -35,7 +35,7 @@ from fe_drivetrain.studies.named_bearings import NamedBearing, named_bearings
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.scene_description import description
 from fe_drivetrain.studies.solved_assembly import checked_model
-from fe_drivetrain.studies.thermal_tables import thermal_tables
+from fe_drivetrain.studies.thermal_tables import thermal_caution, thermal_tables
 from fe_drivetrain.studies.unused import catalogues_not_used
 
 
@@ -122,6 +122,8 @@ def check(
     found.seed = None
     parts = {name: float(mass.sum()) for name, mass in model.part_mass.items()}
     found.say(_held(scene, model.n_dofs))
+    if heat := thermal_caution(scene):
+        found.note(heat, first=True)
     with steps.step("levels"):
         costs = forecast(model)
     found.data("levels", [_cost(one) for one in costs])

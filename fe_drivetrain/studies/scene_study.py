@@ -65,7 +65,7 @@ from fe_drivetrain.studies.study_loads import (
     given_loads,
     surrogate_loads,
 )
-from fe_drivetrain.studies.thermal_tables import thermal_tables
+from fe_drivetrain.studies.thermal_tables import thermal_caution, thermal_tables
 from fe_drivetrain.studies.tilt_secants import TiltSecant, secant_rows, tilt_secants
 from fe_drivetrain.turbine_loads.histories.damage import SLOPES, check_slope
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
@@ -350,7 +350,9 @@ def _cautions(found: Findings, at: _Solved, quick: bool) -> list[str]:
     opening = foot_warnings(at.scene, at.response, together, given.weights, given.gravity)
     doubtful = [given.caution] if given.caution else []
     made = [] if given.own else [given.statement]
-    return [*doubtful, *made, *opening, *at.model.warnings]
+    heat = thermal_caution(at.scene)
+    warm = [f"{heat} No history has these."] if heat else []
+    return [*doubtful, *made, *warm, *opening, *at.model.warnings]
 
 
 def _stated(model: Model, gravity: float) -> Stated:

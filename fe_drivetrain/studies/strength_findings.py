@@ -310,8 +310,9 @@ def _answer(
     reserve = f"S_D\u00a0{_size(tired.fatigue)} where {formatted(required[0])} is required"
     if weak:
         worst = min(weak, key=lambda one: one.value / (one.limit or 1.0))
+        part = "The shaft" if worst in figures[:2] else "A joint"
         verdict = (
-            f"The shaft is too weak: {worst.name} is {formatted(worst.value, 3)} where "
+            f"{part} is too weak: {worst.name} is {formatted(worst.value, 3)} where "
             f"{formatted(worst.limit or 0.0)} is required."
         )
     else:

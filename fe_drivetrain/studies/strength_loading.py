@@ -54,7 +54,7 @@ class StrengthLoading:
             See above.
         """
         files, hub = argument("loads"), argument("hub")
-        if not self.files and self.hub is None:
+        if not self.files and self.hub is None and self.spectrum is None:
             raise InputError(
                 f"strength: nothing loads the shaft: give files with {files}, or loads of the hub "
                 f"with {hub}"
@@ -63,6 +63,11 @@ class StrengthLoading:
             raise InputError(
                 f"strength: {files} hold the loads of the hub: leave {hub} and "
                 f"{argument('spectrum')} out"
+            )
+        if self.spectrum is not None and (self.hub or {}).get("Mx"):
+            raise InputError(
+                f"strength: {argument('spectrum')} has the torque of each class, and {hub} another "
+                "torque Mx: leave one out"
             )
         if self.site is not None and not self.files:
             raise InputError(

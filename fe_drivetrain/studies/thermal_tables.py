@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.shafts.fidelity.ladder import housing_springs
 from fe_drivetrain.shafts.fidelity.thermal_levels import thermal_level
@@ -13,6 +14,8 @@ CAPTION = (
     "What temperatures alone do: reactions that they add, motions of the shaft there, and growth "
     "of its seats. Each part has one temperature; the ground, and the gearbox's springs, have none"
 )
+
+_LEAST = 1.0  # kN: what is less is not spoken of
 
 
 def thermal_tables(scene: Scene, model: Model | None = None) -> dict[str, list[Record]]:
@@ -38,6 +41,27 @@ def thermal_tables(scene: Scene, model: Model | None = None) -> dict[str, list[R
         found["1 beam, housings as springs"] = thermal_level(scene, 1, springs)
         found["4 assembly of solids"] = thermal_state(model)
     return {CAPTION: [row for level, state in found.items() for row in _rows(scene, level, state)]}
+
+
+def thermal_caution(scene: Scene) -> str | None:
+    """The largest force of temperatures along the axis, as a sentence; None without any.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    """
+    if not scene.temperatures:
+        return None
+    reactions = thermal_level(scene).reactions
+    name = max(scene.bearing_names, key=lambda one: abs(float(reactions[one][0])))
+    force = 1e-3 * abs(float(reactions[name][0]))
+    if force < _LEAST:
+        return None
+    return (
+        f"Temperatures alone push {name} with {formatted(force, 3)} kN along the axis, by a beam "
+        "on rigid housings: let one bearing float, or state how each one is held."
+    )
 
 
 def _without_round_off(value: float) -> float:

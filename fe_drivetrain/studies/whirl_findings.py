@@ -61,6 +61,12 @@ def state_whirl(
         "Each shaft is taken by itself: bodies of its neighbours stand still, and their gears hold "
         "it by the stiffness of the meshes."
     ]
+    if endless := [shaft.name for shaft in shafts if _without_bound(shaft)]:
+        cautions.insert(
+            0,
+            f"A critical speed of {', '.join(endless)} is in operation, and the file states no "
+            "damping: whirl and bearing forces of unbalance have no bound there.",
+        )
     if not any(shaft.damped for shaft in shafts):
         cautions.append(
             "The file states no damping (whirl: viscous, loss_factor, bearings): nothing is known "
@@ -122,7 +128,7 @@ def critical_rows(shaft: ShaftWhirl) -> list[Record]:
 def shaft_row(shaft: ShaftWhirl) -> Record:
     """A shaft as a record: range, first critical, unbalance, stability."""
     first, found = shaft.first, shaft.response
-    unstable = shaft.unstable_from
+    unstable, endless = shaft.unstable_from, _without_bound(shaft)
     return {
         "shaft": shaft.name,
         "largest speed [rpm]": shaft.range[1] * RPM,
@@ -134,8 +140,10 @@ def shaft_row(shaft: ShaftWhirl) -> Record:
             None if shaft.in_drivetrain is None else shaft.in_drivetrain * RPM
         ),
         "margin [%]": 100.0 * shaft.margin if np.isfinite(shaft.margin) else None,
-        "whirl by unbalance [um]": 1e6 * float(found.amplitudes[0].max()),
-        "largest bearing force of unbalance [N]": float(found.forces[0].max(initial=0.0)),
+        "whirl by unbalance [um]": None if endless else 1e6 * float(found.amplitudes[0].max()),
+        "largest bearing force of unbalance [N]": (
+            None if endless else float(found.forces[0].max(initial=0.0))
+        ),
         "whirl grows from [rpm]": None if unstable is None else unstable * RPM,
         "stability": _stability(shaft),
     }
@@ -157,6 +165,13 @@ def level_rows(shaft: ShaftWhirl) -> list[Record]:
         }
         for rung in shaft.ladder
     ]
+
+
+def _without_bound(shaft: ShaftWhirl) -> bool:
+    """Whether nothing bounds the whirl of unbalance in operation."""
+    low, high = shaft.range
+    excited = [one.speed for one in shaft.criticals if one.sense > -1.0 + 1e-6]
+    return not shaft.damped and any(low <= speed <= high for speed in excited)
 
 
 def _stability(shaft: ShaftWhirl) -> str:
@@ -233,11 +248,12 @@ def _figures(found: Findings, shafts: Sequence[ShaftWhirl]) -> list[KeyFigure]:
     fastest = max(shafts, key=lambda one: one.range[1])
     if fastest is not nearest and fastest.first is not None:
         figures.append(_critical(found, fastest))
-    largest = max(shafts, key=lambda one: float(one.response.forces[0].max(initial=0.0)))
-    force = float(largest.response.forces[0].max(initial=0.0)) / 1e3
-    figures.append(
-        found.value(f"largest bearing force of unbalance in operation, {largest.name} [kN]", force)
-    )
+    bounded = [one for one in shafts if not _without_bound(one)]
+    if bounded:
+        largest = max(bounded, key=lambda one: float(one.response.forces[0].max(initial=0.0)))
+        name = f"largest bearing force of unbalance in operation, {largest.name} [kN]"
+        force = float(largest.response.forces[0].max(initial=0.0)) / 1e3
+        figures.append(found.value(name, force))
     growing = [shaft for shaft in shafts if shaft.unstable_from is not None]
     if growing:
         worst = min(growing, key=lambda one: (one.unstable_from or 0.0) / one.range[1])
