@@ -163,7 +163,6 @@ def answer(
             page.value("largest factor of C that still fits", spans["C"]),
             page.value("largest factor of C0 that still fits", spans["C0"]),
             page.value("largest factor of the width that still fits", spans["width"]),
-            page.judged(REFUSED, "refusals that name the fault"),
         ],
         hero=HERO,
         cautions=["A value that is wrong by less goes unnoticed: the ensemble then fits it."],

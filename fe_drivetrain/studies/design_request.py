@@ -9,6 +9,7 @@ from itertools import product
 from typing import Any
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import nominal_values
 from fe_drivetrain.studies.life_options import LifeOptions
@@ -144,6 +145,8 @@ class DesignRequest:
     load: Mapping[str, float] = field(default_factory=dict)
     hub_loads: Files | None = None
     life: LifeOptions = field(default_factory=LifeOptions)
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         if not self.vary:

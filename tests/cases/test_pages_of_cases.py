@@ -41,7 +41,13 @@ WITHOUT_BODY = {
     # files, slips and faults
     *(f"verification/{name}" for name in ("files_of_others", "kept_files", "mutations")),
     *(f"verification/{name}" for name in ("mutated_machines", "mutated_scenes")),
+    "verification/din_743",
+    # tables of catalogues, and closed forms
     "bearing/ratings",
+    *(f"bearing/{name}" for name in ("by_designation", "defect_frequencies", "friction")),
+    "bearing/operating_clearance",
+    *(f"stability/{name}" for name in ("bearing_friction", "fitted_insides", "press_fits")),
+    "gear/power_losses",
     "gear/gear_damage",
     "gear/mesh_wave",
     "gear/time_factors",
@@ -49,6 +55,7 @@ WITHOUT_BODY = {
     *(f"stability/{name}" for name in ("faults", "time_series", "time_series_length")),
     # masses on springs
     *(f"stability/{name}" for name in ("loose_bearings", "near_singular_carriers")),
+    "stability/whirl_senses",
     *(f"stability/{name}" for name in ("parametric_resonance", "stiff_limits", "time_step")),
     "stability/tooth_separation",
 }

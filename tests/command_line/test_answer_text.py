@@ -203,7 +203,10 @@ def test_a_misspelt_name_has_its_three_nearest(invoke: Invoke) -> None:
 
 
 def test_names_are_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert complete_case("verification/nafems_le") == ["verification/nafems_le10"]
+    assert complete_case("verification/nafems_le") == [
+        "verification/nafems_le10",
+        "verification/nafems_le11",
+    ]
     assert complete_case("verif")[0] == "verification"
     monkeypatch.chdir(tmp_path)
     (tmp_path / "two_mine.yaml").touch()

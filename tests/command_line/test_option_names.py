@@ -60,7 +60,7 @@ OPTION = r"(?<![\w-])--[a-z]"
 
 OF_OTHER_PROGRAMS = {"cluster.py", "direct_solvers.py", "files.py"}
 #: Pages whose content is what to type.
-TO_BE_TYPED = {LIBRARY / "pages" / "export.py"}
+TO_BE_TYPED = {LIBRARY / "pages" / "export.py", LIBRARY / "bearing" / "bearing_file.py"}
 
 
 def sentence(work: Callable[[], object]) -> str:

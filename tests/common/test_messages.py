@@ -91,7 +91,7 @@ def test_an_openfast_file_may_have_letters_of_any_code_in_its_header(tmp_path):
     ("typed", "meant"),
     [
         ("verification/torsion_unifrom", "verification/torsion_uniform"),
-        ("nafems_le01", "verification/nafems_le10"),
+        ("nafems_fv25", "verification/nafems_fv52"),
         ("stabilty", "stability"),
     ],
 )

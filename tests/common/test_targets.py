@@ -8,6 +8,7 @@ import stat
 import subprocess
 import sys
 from collections.abc import Callable
+from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,7 @@ from fe_drivetrain.common.csv_cells import (
 )
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path, check_writable, scratch_folder
+from fe_drivetrain.report.pictures import Picture
 from fe_drivetrain.turbine_loads.hub_loads.csv_table import read_csv, write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory
 
@@ -125,10 +127,14 @@ def test_a_picture_of_a_part_replaces_no_file_unasked(
     part.write_text(TETRAHEDRON)
     picture.write_bytes(b"a photo")
     os.mkfifo(tmp_path / "pipe.png")
-    monkeypatch.setattr(
-        "fe_drivetrain.report.pictures.part.picture_of_part",
-        lambda points, triangles, marks, path: path.write_bytes(b"a drawing"),
-    )
+
+    def drawn(points: object, triangles: object, marks: object, path: Path) -> Picture:
+        path.write_bytes(b"a drawing")
+        done: Future[None] = Future()
+        done.set_result(None)
+        return Picture(done)
+
+    monkeypatch.setattr("fe_drivetrain.report.pictures.part.picture_of_part", drawn)
     code, _, error = invoke("part", str(part), "--picture", str(picture))
     assert (code, len(error.splitlines())) == (2, 1)
     assert "add --overwrite" in error

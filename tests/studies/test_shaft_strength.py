@@ -136,9 +136,9 @@ def test_a_spectrum_of_one_class_is_the_load_that_stays(
 ) -> None:
     """So many hours that all turns are the knee of the S-N curve."""
     hours = 1e6 / (15.0 * 60.0)
-    found = strength(
-        scene, options=RIGID, hub=HUB, spectrum=[(HUB["Mx"], hours, 15.0 * np.pi / 30.0)]
-    )
+    others = {name: value for name, value in HUB.items() if name != "Mx"}
+    rows = [(HUB["Mx"], hours, 15.0 * np.pi / 30.0)]
+    found = strength(scene, options=RIGID, hub=others, spectrum=rows)
     for name, one in still.sections.items():
         assert found.sections[name].fatigue.value == pytest.approx(one.fatigue.value, rel=3e-3)
 
@@ -149,6 +149,8 @@ def test_what_is_missing_is_named(scene: Scene, tmp_path: Path) -> None:
         strength(plain, hub=HUB)
     with pytest.raises(InputError, match="nothing loads the shaft"):
         strength(scene)
+    with pytest.raises(InputError, match="another torque Mx"):
+        strength(scene, hub=HUB, spectrum=[(1e6, 1.0, 1.0)])
     sharp = strength(change_scene(plain, {"strength": STATED}), options=RIGID, hub=HUB)
     assert list(sharp.left_out) == ["step at x = -0.15 m", "step at x = 0.15 m"]
     assert "Not rated" in sharp.notes[0]

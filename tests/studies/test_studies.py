@@ -4,6 +4,7 @@ import dataclasses
 import json
 import math
 from collections.abc import Callable
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, Literal
 
@@ -37,6 +38,7 @@ from fe_drivetrain.pages.transient import show_transient
 from fe_drivetrain.pages.uncertainty import show_uncertainty
 from fe_drivetrain.pages.validate import show_validate
 from fe_drivetrain.procedure import Project
+from fe_drivetrain.report.pictures import Picture
 from fe_drivetrain.report.suite import Case, Page, Run
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.shafts.response import Model
@@ -236,7 +238,9 @@ def test_the_answer_of_a_study_keeps_the_rules(
 ) -> None:
     # what is drawn takes seconds, and is tried elsewhere
     monkeypatch.setattr(pages.study, "model_pictures", lambda *_: [])
-    monkeypatch.setattr(pages.check, "picture_of_model", lambda *_: None)
+    drawn: Future[None] = Future()
+    drawn.set_result(None)
+    monkeypatch.setattr(pages.check, "picture_of_model", lambda *_: Picture(drawn))
     name = request.node.callspec.params["result"]
     if name not in PAGES:  # its command writes no page
         assert broken_by(result.answer, [result.chart().caption], result.checks) == []

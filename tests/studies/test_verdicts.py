@@ -26,6 +26,7 @@ def bearing(
         limits=limits,
         bearing=SimpleNamespace(rated=rated),
         site=None,
+        inside=None,
     )
 
 
