@@ -48,7 +48,7 @@ def raceway_growth(
     seats : Seats
         Diameters and materials; the shaft is hollow.
     interference : float
-        Of the diameters, cold [m].
+        Interference of the diameters, cold [m].
     warm : Warm
         Temperatures above that of mounting, and the speed.
     width : float

@@ -25,7 +25,7 @@ class Published:
     elements : int
         Rolling elements of one row.
     diameter, pitch : float
-        Of an element, and of the circle of their middles [m].
+        Diameter of an element, and of the circle of their middles [m].
     length : float
         Effective length of a roller [m]; of C0 (ISO 76) where nobody states it, 0 of balls.
     angle : float

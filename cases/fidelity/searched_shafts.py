@@ -57,7 +57,7 @@ def problem_of(
     scene : Scene
         The scene.
     limit : str
-        As of `fe_drivetrain.studies.design_request`.
+        Limit as `fe_drivetrain.studies.design_request` writes it.
     keys : tuple of str
         Bores that are free.
     model : str

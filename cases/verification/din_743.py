@@ -50,11 +50,11 @@ class Example:
     kind : str
         Kind of the notch.
     depth, radius : float
-        Of the notch [m].
+        Size of the notch [m].
     mean, amplitude, largest : tuple of float
         Axial force, bending moment, torque.
     case : int
-        Of the mean stress.
+        Case of the mean stress.
     fatigue, static : str
         S_D and S_F as printed.
     """

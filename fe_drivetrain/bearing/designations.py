@@ -90,7 +90,8 @@ class Designation:
     rows : int
         Rows of rolling elements.
     contact_angle_deg : float or None
-        Of angular contact ball bearings, where the suffix states it, and 0 of deep grooves [deg].
+        Angle of ball bearings with angular contact, where the suffix states it; 0 of deep grooves
+        [deg].
     """
 
     text: str

@@ -117,7 +117,7 @@ def fit_pressure(inner: Ring, outer: Ring, interference: float) -> float:
     inner, outer : Ring
         Rings, the outside of one at the inside of the other.
     interference : float
-        Of the diameters [m]; negative is a gap.
+        Interference of the diameters [m]; negative is a gap.
 
     Returns
     -------

@@ -72,7 +72,7 @@ def slopes(functions: Functions, at: Floats, step: float = STEP) -> Floats:
     at : ndarray, (d,)
         The point, each variable from 0 to 1.
     step : float
-        Of the differences.
+        Step of the differences.
     """
     columns = []
     for k in range(len(at)):
@@ -96,7 +96,7 @@ def constrained_minimum(functions: Functions, start: Floats, step: float = STEP)
     start : ndarray, (d,)
         Each variable from 0 to 1; without variables the start is the answer.
     step : float
-        Of the differences that the gradients are taken from.
+        Step of the differences that the gradients are taken from.
 
     Returns
     -------
@@ -120,7 +120,7 @@ def least_violation(functions: Functions, start: Floats, step: float = STEP) -> 
     start : ndarray, (d,)
         Each variable from 0 to 1.
     step : float
-        Of the differences.
+        Step of the differences.
 
     Returns
     -------

@@ -83,7 +83,7 @@ class PicturesBegun:
     Attributes
     ----------
     title : str
-        Of the scene.
+        Title of the scene.
     model, deformed : Picture
         The two.
     factor : float

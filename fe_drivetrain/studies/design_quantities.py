@@ -40,11 +40,10 @@ from fe_drivetrain.shafts.fidelity.loaded_shaft import (
 )
 from fe_drivetrain.shafts.fidelity.quantities import Solved, known_names, numbers
 from fe_drivetrain.shafts.fidelity.quantity import named_load
-from fe_drivetrain.shafts.response.entering import Factors, entering, joined
+from fe_drivetrain.shafts.response.entering import AtFront, Factors, entering, joined
 from fe_drivetrain.shafts.response.model import scene_loads
 from fe_drivetrain.shafts.uncertainty.resolver import Resolver, unit_content
 from fe_drivetrain.studies.design_request import DesignRequest
-from fe_drivetrain.studies.life_digest import AtFront
 from fe_drivetrain.studies.rolling_bearings import OneBearing, bearings_of
 from fe_drivetrain.studies.turning_advice import finest_modes
 from fe_drivetrain.studies.turning_model import TurningModel

@@ -18,7 +18,7 @@ from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.entrance import Entrance
-from fe_drivetrain.shafts.response.entering import at_front
+from fe_drivetrain.shafts.response.entering import AtFront, at_front
 from fe_drivetrain.studies.history_options import HistoryOptions
 from fe_drivetrain.turbine_loads.histories.sites import (
     HOURS_A_YEAR,
@@ -128,14 +128,9 @@ class Reading:
             found = np.zeros_like(history.loads)
             found[:, TORQUE] = history.loads[:, TORQUE]
             return found
-        return (history if self.entrance is None else at_front(_At(self.entrance), history)).loads
-
-
-@dataclass(frozen=True)
-class _At:
-    """What `at_front` asks of a drivetrain."""
-
-    entrance: Entrance
+        if self.entrance is None:
+            return history.loads
+        return at_front(AtFront(self.entrance), history).loads
 
 
 @dataclass(frozen=True, eq=False)

@@ -122,39 +122,6 @@ def what_ifs(one: OneBearing, rules: LifeRules, choices: Choices) -> tuple[WhatI
     )
 
 
-def ratios(
-    one: OneBearing,
-    rules: LifeRules,
-    ifs: Sequence[WhatIf],
-    loads: PointLoads,
-    speed_rpm: Floats,
-    weights: Floats,
-) -> Floats:
-    """Damage by L10mr with each of the other values, over that with those that are taken.
-
-    Parameters
-    ----------
-    one : OneBearing
-        The bearing.
-    rules : LifeRules
-        Choices.
-    ifs : sequence of WhatIf
-        Of `what_ifs`.
-    loads : PointLoads
-        Load steps as they enter the body, (n, 6) or more [N, N m].
-    speed_rpm : Floats
-        (n,) [1/min].
-    weights : Floats
-        (n,) about in proportion to the damage of each step, as the fourth power of its rollers.
-
-    Returns
-    -------
-    ratios : Floats
-        (len(ifs),) from a sample of a hundredth of the steps; 1 where none does damage.
-    """
-    return np.asarray(effects(one, rules, ifs, loads, speed_rpm, weights)[:, 1])
-
-
 def effects(
     one: OneBearing,
     rules: LifeRules,
@@ -172,13 +139,13 @@ def effects(
     rules : LifeRules
         Choices.
     ifs : sequence of WhatIf
-        Other values.
+        Other values, those of `what_ifs` among them.
     loads : PointLoads
         Load steps as they enter the body, (n, 6) or more [N, N m].
     speed_rpm : Floats
         (n,) [1/min].
     weights : Floats
-        (n,) as in `ratios`.
+        (n,) about in proportion to the damage of each step, as the fourth power of its rollers.
 
     Returns
     -------

@@ -23,11 +23,10 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.drivetrain_file.entrance import AT_HUB, Entrance
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.response.cached import whole_content
-from fe_drivetrain.shafts.response.entering import Entered, entering
-from fe_drivetrain.studies.life_assumptions import ratios, what_ifs
+from fe_drivetrain.shafts.response.entering import AtFront, Entered, entering
+from fe_drivetrain.studies.life_assumptions import effects, what_ifs
 from fe_drivetrain.studies.life_inside import inside_effects
 from fe_drivetrain.studies.life_series import has_series, series_values
 from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
@@ -240,7 +239,8 @@ def digest(
         report(f"{one.name}, {file.stem}: load steps ({done} of {n})")
     wind = np.nan if found.wind_speed is None else float(found.wind_speed.mean())
     made = sums.digest(wind, float(np.abs(turns).mean()), float(n))
-    changed = ratios(one, own, what_ifs(one, own, choices), loads, speed, sums.weights)
+    others = what_ifs(one, own, choices)
+    changed = effects(one, own, others, loads, speed, sums.weights)[:, 1]
     levels, flanges = by_levels(one, loads, speed)
     return replace(
         made,
@@ -265,19 +265,6 @@ def _speed_rpm(file: Path, found: Recorded, reading: Reading) -> Floats:
         f"{argument('LifeOptions.rotor_speed_rpm')} in 1/min, or its channel, as in "
         "`ChannelMap(channels={'rotor speed': 'RotSpeed'})`"
     )
-
-
-@dataclass(frozen=True)
-class AtFront:
-    """A drivetrain whose main shaft begins where hub loads enter, and whose file says no more.
-
-    Attributes
-    ----------
-    entrance : Entrance
-        Where loads enter.
-    """
-
-    entrance: Entrance = AT_HUB
 
 
 def loaded_at(drivetrain: Drivetrain) -> Entered:

@@ -120,7 +120,7 @@ def inside_effects(
     loads : PointLoads
         Load steps as they enter the body, (n, 6) or more [N, N m].
     speed_rpm, weights : Floats
-        (n,) as in `fe_drivetrain.studies.life_assumptions.ratios`.
+        (n,) as in `fe_drivetrain.studies.life_assumptions.effects`.
 
     Returns
     -------

@@ -81,7 +81,7 @@ class JointAnswer:
     required : tuple of float
         Least of both that are asked for.
     pressure : float
-        Of a press fit [Pa]; 0 of a flange.
+        Pressure of a press fit [Pa]; 0 of a flange.
     """
 
     name: str
@@ -105,11 +105,11 @@ def section_answers(
     shaft : StrengthShaft
         The shaft.
     parts : sequence of StrengthSums
-        Of each history.
+        Sums of each history.
     repeats : ndarray, (n,)
         How often each comes in the life.
     hours : float
-        Of the life.
+        Hours of the life.
     varies : bool
         Whether safety is over all cycles of the life.
     """
@@ -161,7 +161,7 @@ def joint_answers(shaft: StrengthShaft, parts: Sequence[StrengthSums]) -> list[J
     shaft : StrengthShaft
         The shaft.
     parts : sequence of StrengthSums
-        Of each history.
+        Sums of each history.
     """
     slip, opening = worst_of(parts, "slip"), worst_of(parts, "opening")
     stated, model = shaft.stated, shaft.model

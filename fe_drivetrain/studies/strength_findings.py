@@ -202,7 +202,7 @@ def state_findings(
     histories : History
         What loaded it.
     hours : float
-        Of the life.
+        Hours of the life.
     varies : bool
         Whether S_D is over the cycles of that life.
     """

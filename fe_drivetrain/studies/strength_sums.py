@@ -18,7 +18,7 @@ from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.entrance import Entrance
 from fe_drivetrain.drivetrain_file.shaft_strength import FlangeBolts
-from fe_drivetrain.shafts.response.entering import entering
+from fe_drivetrain.shafts.response.entering import AtFront, entering
 from fe_drivetrain.shafts.strength.din743 import (
     SectionStrength,
     combined_safety,
@@ -51,11 +51,11 @@ class FitSeat:
     name : str
         Its name.
     diameter, length : float
-        Of the seat [m].
+        Size of the seat [m].
     pressure : float
-        Of the fit [Pa].
+        Pressure of the fit [Pa].
     friction : float
-        Of its faces.
+        Friction of its faces.
     section : int
         Number of the section whose torque and axial force it takes.
     """
@@ -80,7 +80,7 @@ class StrengthModel:
         Internal forces, with housings at each of their bounds; those of the assessed sections come
         first.
     moduli : ndarray, (s, 3)
-        Of the assessed sections.
+        Section moduli of the assessed sections.
     strengths : tuple of SectionStrength
         What these endure.
     rule : Rule
@@ -138,7 +138,7 @@ class StrengthSums:
     along : ndarray, (p,)
         Largest equivalent nominal stress (von Mises) at the stations along the shaft [Pa].
     turns : float
-        Of the shaft.
+        Turns of the shaft.
     """
 
     seconds: float
@@ -172,7 +172,7 @@ def history_sums(
     values : ndarray, (n, 6 + 6 m)
         Loads as they enter.
     speed : ndarray, (n,)
-        Of the rotor [rad/s].
+        Speed of the rotor [rad/s].
     step : float
         Between two samples [s].
     wind : float
@@ -324,13 +324,6 @@ def file_sums(
     return kept
 
 
-@dataclass(frozen=True)
-class _At:
-    """What `entering` asks of a drivetrain."""
-
-    entrance: Entrance
-
-
 def _read(file: Path, model: StrengthModel, options: HistoryOptions) -> StrengthSums:
     found = read_recorded(file, options.names, options.skip)
     history, speed = found.history, found.rotor_speed
@@ -343,7 +336,7 @@ def _read(file: Path, model: StrengthModel, options: HistoryOptions) -> Strength
     if speed is None:
         speed = np.full(len(history), (options.rotor_speed_rpm or 0.0) * np.pi / 30.0)
     wind = float("nan") if found.wind_speed is None else float(found.wind_speed.mean())
-    values = entering(_At(model.entrance), history).values
+    values = entering(AtFront(model.entrance), history).values
     return history_sums(model, values, speed, history.step, wind)
 
 

@@ -46,7 +46,7 @@ def _stepped(**changes: Any) -> Scene:
 
 
 def _stiffness() -> float:
-    """Of the shaft with bores of 0.2 m."""
+    """Stiffness of the shaft with bores of 0.2 m."""
     return bending_stiffness(LENGTHS, OUTER, (0.2, 0.2, 0.2), 2.0e11)
 
 

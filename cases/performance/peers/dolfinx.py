@@ -46,7 +46,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
         "pc_hpddm_coarse_correction": "balanced",
     },
 }
-"""Of PETSc, for each preconditioner."""
+"""Options of PETSc, for each preconditioner."""
 
 LAUNCH = ("mpiexec", "--bind-to", "none", "--oversubscribe", "-n", "{threads}")
 """What stands before the interpreter on the command line."""

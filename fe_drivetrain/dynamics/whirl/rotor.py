@@ -364,7 +364,7 @@ def bearing_of(
     node : int
         Number of its node.
     stiffness, damping : ndarray, (6, 6) or (k, 6, 6)
-        Of ux to rz of its node [N/m, N, N m/rad; and times s].
+        Rows and columns are ux to rz of its node [N/m, N, N m/rad; and times s].
     speeds : sequence of float
         Speeds (k,) of the shaft [rad/s].
     mirrored : bool

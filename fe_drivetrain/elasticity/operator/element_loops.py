@@ -81,7 +81,7 @@ def in_pieces(count: int, loop: Callable[..., None], *arrays: Any) -> None:
     loop : callable
         Takes the number of the piece, and the arrays.
     *arrays : Any
-        Of which each piece writes its own rows.
+        Arrays of which each piece writes its own rows.
     """
     with ThreadPoolExecutor(get_num_threads()) as pool:
         for piece in [pool.submit(loop, piece, *arrays) for piece in range(count)]:

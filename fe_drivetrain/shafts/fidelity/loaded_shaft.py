@@ -122,7 +122,7 @@ def section_stress(forces: Floats, outer: float, inner: float) -> float:
     Parameters
     ----------
     forces : ndarray, (6,)
-        Of the section, the first and the fourth along and about the axis [N, N m].
+        Forces of the section, the first and the fourth along and about the axis [N, N m].
     outer, inner : float
         Diameters [m].
     """

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
-from fe_drivetrain.drivetrain_file.entrance import Entrance
+from fe_drivetrain.drivetrain_file.entrance import AT_HUB, Entrance
 from fe_drivetrain.turbine_loads.hub_loads.files import require_points
 from fe_drivetrain.turbine_loads.hub_loads.histories import LoadHistory, require_all_loads
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
@@ -29,6 +29,19 @@ class Entered(Protocol):
     @property
     def entrance(self) -> Entrance:
         """Where loads enter, and which point they are about."""
+
+
+@dataclass(frozen=True)
+class AtFront:
+    """A drivetrain of which nothing is known but where hub loads enter, at its front by default.
+
+    Attributes
+    ----------
+    entrance : Entrance
+        Where loads enter.
+    """
+
+    entrance: Entrance = AT_HUB
 
 
 @dataclass(frozen=True, eq=False)

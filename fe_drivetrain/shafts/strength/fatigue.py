@@ -48,7 +48,7 @@ class Rule:
     Attributes
     ----------
     case : int
-        Of DIN 743-1: 1, the mean stress stays as loads grow; 2, both grow.
+        Case of DIN 743-1: 1, the mean stress stays as loads grow; 2, both grow.
     slopes : tuple of float
         Exponents of the S-N curves of normal and of shear stress.
     knee : float
@@ -155,7 +155,7 @@ class TurningStress:
         Stresses of axial force, of the moment about -y, which pulls above, of that about z, which
         pulls at +y, and of torque [Pa].
     angle : ndarray, (n,)
-        Of the shaft about x [rad].
+        Angle of the shaft about x [rad].
     """
 
     tension: Floats
@@ -189,7 +189,7 @@ def turning_stress(forces: Floats, moduli: Floats, angle: Floats) -> TurningStre
     Parameters
     ----------
     forces : ndarray, (n, 6)
-        Of the part in front on the part behind [N, N m].
+        Forces of the part in front on the part behind [N, N m].
     moduli : ndarray, (3,)
         Area [m^2] and section moduli of bending and torsion [m^3].
     angle : ndarray, (n,)

@@ -41,7 +41,7 @@ SIZE = 0.35
 """Largest element, in the thinner diameter."""
 
 _DEEP = 0.02
-"""Of the radius: how deep below the surface the gradient is read."""
+"""How deep below the surface the gradient is read, over the radius."""
 
 
 @dataclass(frozen=True)
@@ -229,7 +229,7 @@ def end_stress(
     places : ndarray, (k, 2)
         x, and the radius or the height [m].
     diameter, bore : float
-        Of the section [m].
+        Diameters of the section [m].
     nominal_bore : float
         Bore of the section whose nominal stress is 1 [m].
     """

@@ -48,15 +48,15 @@ def flange_safety(
     Parameters
     ----------
     forces : ndarray, (n, 6)
-        Of the hub on the shaft [N, N m].
+        Forces of the hub on the shaft [N, N m].
     count : int
         Number of bolts.
     circle : float
         Diameter of the bolt circle [m].
     preload : float
-        Of each bolt [N].
+        Preload of each bolt [N].
     friction : float
-        Of the faces.
+        Friction of the faces.
     """
     pull = -forces[:, 0]
     clamped = np.maximum(count * preload - pull, 0.0)
@@ -82,9 +82,9 @@ def press_pressure(
     Parameters
     ----------
     diameter : float
-        Of the seat [m].
+        Diameter of the seat [m].
     bore : float
-        Of the shaft; 0 where it is solid [m].
+        Bore of the shaft; 0 where it is solid [m].
     hub : float
         Outer diameter of the hub [m].
     interference : float
@@ -118,11 +118,11 @@ def press_safety(
     forces : ndarray, (n, 6)
         That the fit transmits [N, N m].
     diameter, length : float
-        Of the seat [m].
+        Size of the seat [m].
     pressure : float
-        Of the fit [Pa].
+        Pressure of the fit [Pa].
     friction : float
-        Of its faces.
+        Friction of its faces.
     """
     holds = friction * pressure * np.pi * diameter * length
     acting = np.hypot(2.0 * forces[:, 3] / diameter, forces[:, 0])

@@ -92,7 +92,7 @@ def hole_effect(diameter: float, radius: float, yielding: float, hard: bool) -> 
     Parameters
     ----------
     diameter, radius : float
-        Of the shaft, and of the hole [m].
+        Diameter of the shaft, and radius of the hole [m].
     yielding, hard : float, bool
         See `support_factors`.
     """

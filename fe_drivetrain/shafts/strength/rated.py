@@ -46,7 +46,7 @@ class RatedSection:
     formula : ndarray, (3,)
         Stress concentration factors by the formulas of DIN 743-2; NaN where these have none.
     band : ndarray, (3,)
-        Of the stress concentration factors by elasticity; zero where formulas gave them.
+        Bands of the stress concentration factors by elasticity; zero where formulas gave them.
     gradients : ndarray, (3,)
         Relative stress gradients at the peak [1/m]; zero where there is none.
     by_elasticity : bool

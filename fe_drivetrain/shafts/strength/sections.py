@@ -33,7 +33,7 @@ class ShaftSection:
     raw : float
         Diameter at the heat treatment, the largest of those beside it [m].
     depth, radius : float
-        Of the notch [m]; 0 where it has none.
+        Size of the notch [m]; 0 where it has none.
     wide_bore : float
         Bore beside a shoulder, under its wider side [m].
     """
