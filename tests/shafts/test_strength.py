@@ -160,6 +160,12 @@ def test_the_stress_at_a_sharp_fillet_falls_as_at_any_notch() -> None:
     assert (np.array([*slopes.values()]) < formula).all()
 
 
+def test_fillets_far_smaller_than_the_shaft_keep_the_order_of_the_corner() -> None:
+    """In torsion the stress grows as the radius to -1/3 (Williams 1952)."""
+    small, tiny = (fillet_peak("torsion", Shoulder(1.0, 1.2, r)).factor for r in (1e-4, 1e-5))
+    assert tiny / small == pytest.approx(10.0 ** (1.0 / 3.0), rel=2e-3)
+
+
 def test_internal_forces_are_those_of_the_loads_in_front() -> None:
     """In front of all bearings statics alone has them; behind the rear face nothing is left."""
     scene = library_scene(SCENE)

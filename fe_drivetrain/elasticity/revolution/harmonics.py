@@ -431,10 +431,12 @@ def _located(mesh: Meridian, place: Floats) -> tuple[int, Floats]:
     best, least = (-1, np.zeros(2)), math.inf
     for cell in near:
         at = mesh.element.places[: mesh.element.corners].mean(axis=0)
+        # from its own corner: a cell far smaller than its place would be lost in round-off
+        corner = nodes[cell, 0]
         for _ in range(30):
             values, gradients = mesh.element.at(at[None])
-            gap = place - values[0] @ nodes[cell]
-            step = np.linalg.solve((gradients[0] @ nodes[cell]).T, gap)
+            gap = place - corner - values[0] @ (nodes[cell] - corner)
+            step = np.linalg.solve((gradients[0] @ (nodes[cell] - corner)).T, gap)
             at = at + np.clip(step, -0.5, 0.5)
             if np.abs(step).max() < 1e-13:
                 break
