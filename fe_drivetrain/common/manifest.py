@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple, get_args
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.plain_json import plain_json
 
 MANIFEST = "fe-drivetrain-files.json"
 """Its name, in the folder."""
@@ -112,10 +113,10 @@ def read_manifest(folder: Path) -> Manifest | None:
     try:
         if file.is_symlink() or file.stat().st_size > _MAXIMUM or not file.is_file():
             raise _damaged(file)
-        content = json.loads(file.read_text(encoding="utf-8"))
+        content = plain_json(file.read_text(encoding="utf-8"))
     except FileNotFoundError:
         return None
-    except (OSError, ValueError, RecursionError) as error:
+    except (OSError, ValueError) as error:
         raise _damaged(file) from error
     found = _from_json(content)
     if found is None:

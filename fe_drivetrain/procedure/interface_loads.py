@@ -20,6 +20,7 @@ from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.csv_cells import SafeWriter
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.plain_json import plain_json
 from fe_drivetrain.common.reading import unreadable
 from fe_drivetrain.common.regular_files import text_of
 from fe_drivetrain.common.short_repr import short_repr
@@ -375,7 +376,7 @@ def read_load_json(path: str | Path) -> LoadTable:
     except (OSError, ValueError) as error:
         raise unreadable(path, "a load table from", error) from error
     try:
-        content = json.loads(text)
+        content = plain_json(text)
         interfaces = tuple(
             Interface(
                 row["name"],

@@ -124,9 +124,10 @@ def test_tables_come_back_as_they_were(table: LoadTable, tmp_path: Path) -> None
     assert np.array(rows[1:], dtype=float)[:, 15] == pytest.approx(
         table.interface("gearbox entrance").loads[:, 2], rel=0, abs=0
     )
-    (tmp_path / "b.json").write_text("{}")
-    with pytest.raises(InputError, match="cannot read a load table"):
-        read_load_json(tmp_path / "b.json")
+    for wrong in ("{}", "[" * 10**5):
+        (tmp_path / "b.json").write_text(wrong)
+        with pytest.raises(InputError, match="cannot read a load table"):
+            read_load_json(tmp_path / "b.json")
 
 
 def test_analysis_scales_with_the_loads_and_its_durations_sum_to_the_whole(

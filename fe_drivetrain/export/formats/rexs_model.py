@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import base64
 import io
-import json
 import math
 import re
 import zipfile
@@ -23,6 +22,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.plain_json import plain_json
 from fe_drivetrain.common.plain_xml import plain_root
 from fe_drivetrain.common.reading import unreadable
 from fe_drivetrain.common.regular_files import content_of
@@ -266,8 +266,8 @@ def _from_archive(content: bytes, path: str) -> bytes:
 
 def _of_json(content: bytes, source: str) -> Model:
     try:
-        data = json.loads(content.decode("utf-8"))
-    except (ValueError, RecursionError) as error:
+        data = plain_json(content.decode("utf-8"))
+    except ValueError as error:
         why = " ".join(str(error).split())
         raise InputError(f"{source}: {why}: export it again, or correct it") from error
     model = data.get("model") if isinstance(data, dict) else None

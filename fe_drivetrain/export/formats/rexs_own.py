@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.plain_json import plain_json
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.export.formats.rexs_model import Part
 
@@ -47,8 +48,8 @@ def own_values(part: Part) -> dict[str, Any]:
             continue
         text = part.word(name) or ""
         try:
-            found[name.removeprefix(PREFIX)] = json.loads(text)
-        except (ValueError, RecursionError) as error:
+            found[name.removeprefix(PREFIX)] = plain_json(text)
+        except ValueError as error:
             raise InputError(
                 f"{part}: {name} is {shown(text)} but must be a value in JSON, as this program "
                 "writes it: correct it, or remove the attribute"
