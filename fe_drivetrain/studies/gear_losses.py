@@ -166,7 +166,7 @@ def drivetrain_losses(
     Raises
     ------
     InputError
-        No speed of the rotor is known, or the oil is of a grade that has no viscosity at 100 degC.
+        No speed of the rotor is known, or the oil is of a grade that is not known.
     """
     oil = check_losses(drivetrain, train, grade)
     machine = train.machine
@@ -223,12 +223,6 @@ def check_losses(drivetrain: Drivetrain, train: GearTrain, grade: float | None) 
     operation = drivetrain.operation
     stated = None if operation is None else operation.lubricant
     name = stated if grade is None else f"VG {grade:g}"
-    if name is not None and name not in GRADES:
-        known = ", ".join(one for one in GRADES if one.startswith("VG"))
-        raise InputError(
-            f"losses: the viscosity of {name} at 100 degC is not known, and so not at the "
-            f"temperature of the oil: use one of {known} in operation.lubricant"
-        )
     return gearbox_oil(name, None if operation is None else operation.temperature, "-/17/14")
 
 
