@@ -8,13 +8,7 @@ from time import process_time
 
 import numpy as np
 
-from fe_drivetrain.bearing.catalogue import (
-    Entry,
-    Named,
-    fitted_entry,
-    read_bearing_catalogue,
-)
-from fe_drivetrain.bearing.catalogue_page import CataloguePage
+from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
 from fe_drivetrain.bearing_life.life.lubricants import GRADES, Lubricant
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
@@ -41,6 +35,7 @@ from fe_drivetrain.studies.gear_machine import GearTrain
 from fe_drivetrain.studies.gear_meshes import GearMesh
 from fe_drivetrain.studies.gear_spectra import TORQUE
 from fe_drivetrain.studies.gearbox_bearings import gearbox_oil
+from fe_drivetrain.studies.named_bearings import entry_of
 from fe_drivetrain.studies.rolling_bearings import Oil
 
 CONSTANT = "constant efficiency"
@@ -244,18 +239,14 @@ def lossy_bearings(
     grease = Film(1e-6 * GREASE.viscosity, "grease")
     found, unknown = [], []
     for name in ring_speeds(machine):
-        entry = _entry(rows[name].catalogue, known) if name in rows else None
-        if entry is None:
+        named = rows[name].catalogue if name in rows else None
+        if named is None or (isinstance(named, str) and named not in known):
             unknown.append(name)
             continue
+        entry = entry_of(name, named, known)
         place = _place(held.get(name, name), shafts)
         found.append(LossyBearing(name, place, entry, grease if name in main else film))
     return tuple(found), tuple(unknown)
-
-
-def _entry(named: Named | None, known: Mapping[str, Entry]) -> Entry | None:
-    """The entry of a catalogue's name or page; None where there is none."""
-    return fitted_entry(named) if isinstance(named, CataloguePage) else known.get(str(named))
 
 
 def _seals(drivetrain: Drivetrain, machine: MachineTable) -> list[LossySeal]:
