@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.fidelity.least_shafts import bending_stiffness, least_bored_shaft
+from fe_drivetrain.cases.references.least_shafts import bending_stiffness, least_bored_shaft
 from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import decades
 from fe_drivetrain.comparison.constrained_minimum import (
@@ -32,7 +32,8 @@ MODULUS, DENSITY = 2.1e11, 7850.0
 OFF = 0.01
 """Share of a range by which a bore that is found may be off and still be of use."""
 
-LENGTH, PLACE, VALUE = "length of the section [m]", "error of its bore over the range", "error"
+LENGTH, PLACE = "length of the section [m]", "error of its bore over the range"
+WEIGHT, MASS, TOLD = "share of the mass", "error of the mass", "told that it is flat"
 FLAT = "Error of the bore of an ever shorter section; shaded: below 1 % of the range"
 BY, PRICE = "limit from where the ranges end, relative", "error of the price"
 IDLE = "Price of a limit where ranges end just beyond or before it; shaded: below 1 %"
@@ -106,72 +107,60 @@ def run(run: Run, page: Page) -> None:
     )
 
 
+def shortened(length: float) -> Record:
+    """The search with a last section of a length, against Lagrange's condition."""
+    lengths = np.array([LENGTHS[0], LENGTHS[1], length])
+    limit = bending_stiffness(lengths, OUTER, np.full(3, 0.2), MODULUS)
+    exact = least_bored_shaft(list(lengths), list(OUTER), limit * (1.0 + MARGIN), MODULUS, DENSITY)
+    of = lightest(lengths, [limit])
+    found = [
+        constrained_minimum(of.functions, start) for start in starting_points(np.full(3, 0.2), 4)
+    ]
+    kept = distinct_minima(found, KEPT, FAR)
+    place = (exact.bores - LOW) / (HIGH - LOW)
+    return {
+        LENGTH: length,
+        WEIGHT: mass_of(lengths * [0.0, 0.0, 1.0], exact.bores) / exact.mass,
+        PLACE: max(abs(float(one.at[2] - place[2])) for one in found),
+        MASS: max(abs(float(one.values[0]) * of.size / exact.mass - 1.0) for one in found),
+        TOLD: "yes" if flat_minima(kept[0], kept[1:]) else "no",
+    }
+
+
 def vanishing_section(page: Page, each: float) -> float:
     """Search with an ever shorter section; the least share of mass whose bore is found."""
-    rows: list[Record] = []
-    silent, errors, shares = 0, [], []
-    for length in decades(-9, -0.1, each)[::-1]:
-        lengths = np.array([LENGTHS[0], LENGTHS[1], length])
-        limit = bending_stiffness(lengths, OUTER, np.full(3, 0.2), MODULUS)
-        exact = least_bored_shaft(
-            list(lengths), list(OUTER), limit * (1.0 + MARGIN), MODULUS, DENSITY
-        )
-        of = lightest(lengths, [limit])
-        found = [
-            constrained_minimum(of.functions, start)
-            for start in starting_points(np.full(3, 0.2), 4)
-        ]
-        kept = distinct_minima(found, KEPT, FAR)
-        told = bool(flat_minima(kept[0], kept[1:]))
-        place = (exact.bores - LOW) / (HIGH - LOW)
-        off = max(abs(float(one.at[2] - place[2])) for one in found)
-        errors.append(max(abs(float(one.values[0]) * of.size / exact.mass - 1.0) for one in found))
-        share = mass_of(lengths * [0.0, 0.0, 1.0], exact.bores) / exact.mass
-        shares.append((share, off))
-        silent += off > OFF and not told
-        rows.append(
-            {
-                LENGTH: float(length),
-                "share of the mass": share,
-                PLACE: off,
-                "error of the mass": errors[-1],
-                "told that it is flat": "yes" if told else "no",
-            }
-        )
+    rows = [shortened(float(length)) for length in decades(-9, -0.1, each)[::-1]]
     page.vanishes(
         "largest error of the least mass, however flat",
-        max(errors),
+        max(float(row[MASS]) for row in rows),
         within=1e-6,
         why="where the search stops; an error of the place counts with its square",
         source="Lagrange's condition",
     )
     page.equals(
         "bores off by more than 1 % of their range that no caution names",
-        float(silent),
+        float(sum(float(row[PLACE]) > OFF and row[TOLD] == "no" for row in rows)),
         0.0,
         within=0.0,
         why="counted: starts that end apart at one mass are told",
         source="Lagrange's condition",
     )
-    good = [share for share, off in shares if off <= OFF]
-    shortest = min(good)
+    good = [row for row in rows if float(row[PLACE]) <= OFF]
+    least = min(float(row[WEIGHT]) for row in good)
     page.limit(
         "search for a design, what shall be least nearly flat",
         "share of what shall be least that a value has",
-        low=shortest,
+        low=least,
         criterion="each value within 1 % of its range of the least design's",
         beyond="the search stops where it happens to be; the least value itself is right",
         program="says that it is flat, and by how much values may differ",
         remedy="fix the value by other reasons, or leave it out",
     )
     page.section("Flat")
-    page.sweep(FLAT, rows, LENGTH, PLACE, log="xy", safe=(_shortest(rows), None))
+    shortest = min(float(row[LENGTH]) for row in good)
+    page.sweep(FLAT, rows, LENGTH, PLACE, log="xy", safe=(shortest, None))
     page.table("Least designs with an ever shorter section", rows)
-    return shortest
-
-
-def _shortest(rows: list[Record]) -> float:
-    return min(float(row[LENGTH]) for row in rows if float(row[PLACE]) <= OFF)
+    return least
 
 
 def capped_price(limit: float) -> float:

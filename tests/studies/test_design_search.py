@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from coarse_scenes import LENGTHS, coarse_scene
 
-from fe_drivetrain.cases.fidelity.least_shafts import bending_stiffness, least_bored_shaft
+from fe_drivetrain.cases.references.least_shafts import bending_stiffness, least_bored_shaft
 from fe_drivetrain.command_line.app import main
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.comparison.constrained_minimum import slopes, starting_points
