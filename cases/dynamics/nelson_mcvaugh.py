@@ -1,5 +1,6 @@
 """Whirl of Nelson and McVaugh's rotor: critical speeds of both ratios, in two ways."""
 
+import time
 from dataclasses import dataclass
 from functools import partial
 
@@ -20,6 +21,7 @@ from fe_drivetrain.dynamics.whirl import (
     Theory,
     WhirlChart,
     chart_criticals,
+    condensed_rotor,
     critical_speeds,
     sense_word,
     whirl_chart,
@@ -30,6 +32,11 @@ from fe_drivetrain.studies import campbell_of
 
 SOURCE = "Nelson and McVaugh 1976, as printed by VM247 and VM263"
 HERO = "Campbell diagram of Nelson and McVaugh's rotor: forward and backward whirl"
+CONDENSED = "Error of condensed rotors against processor time, more modes from left to right"
+MODES = (0, 2, 4, 6, 8, 12, 16)
+"""Modes between the bearings that condensed rotors keep."""
+ROUND_OFF = 1e-8
+REPEATS = 5
 HIGHEST = 1.1e5 * RPM
 """Highest speed that is looked at [rad/s]."""
 HALF_DIGITS = (
@@ -112,10 +119,23 @@ def run(run: Run, page: Page) -> None:
         why="a thin disc and a slender shaft split each pair, the backward one lower",
         source="gyroscopic terms of equal bearings",
     )
+    with run.step("condensed"):
+        rows = condensed_rows(2 if run.quick else 4)
+    check_condensed(page, rows)
     answer(page, found)
     page.section("Whirl over the speed")
     page.add(campbell_of(found.chart, (found.speeds[1] * RPM).tolist(), HERO))
     page.table("Critical speeds without shear, as the source has it", printed_rows(found))
+    page.section("Condensed rotors")
+    page.sweep(
+        CONDENSED,
+        rows[:-1],
+        "processor time [s]",
+        "error of the worst of six",
+        log="xy",
+        points=True,
+    )
+    page.table("The rotor condensed to its bearings, with modes of what is between", rows)
     page.section("Theories of the beam")
     page.table("Critical speeds of whirl once a turn by theory [rpm]", theory_rows())
     page.text(
@@ -130,6 +150,56 @@ def _apart(theory: Theory) -> float:
     one = criticals_rpm(NELSON_MCVAUGH.rotor(theory, 2))
     other = criticals_rpm(NELSON_MCVAUGH.rotor("rayleigh", 2))
     return 100.0 * float(np.abs(one / other - 1).max())
+
+
+def condensed_rows(parts: int) -> list[Record]:
+    """Critical speeds of condensed rotors over the modes that are kept, the whole one last."""
+    whole = NELSON_MCVAUGH.rotor("rayleigh", parts)
+    exact = criticals_rpm(whole, 1)
+    rows: list[Record] = []
+    for modes in (*MODES, None):
+        spent = []
+        for _ in range(REPEATS):
+            begun = time.process_time()
+            rotor = whole if modes is None else condensed_rotor(whole, modes)
+            found = criticals_rpm(rotor, 1)
+            spent.append(time.process_time() - begun)
+        seconds = max(min(spent), 1e-6)
+        known = min(len(found), len(exact))
+        apart = found[:known] / exact[:known] - 1.0
+        rows.append(
+            {
+                "modes": "all, not condensed" if modes is None else modes,
+                "degrees of freedom": 2 * len(rotor.mass),
+                "processor time [s]": seconds,
+                "most of five runs [s]": max(spent),
+                "critical speeds found": len(found),
+                "error of the first": float(apart[0]),
+                "error of the worst of six": float(apart.max()) if known == len(exact) else 1.0,
+            }
+        )
+    return rows
+
+
+def check_condensed(page: Page, rows: list[Record]) -> None:
+    """Condensed speeds come from above, and sink as modes are added."""
+    worst = np.array([row["error of the worst of six"] for row in rows[:-1]], dtype=float)
+    first = np.array([row["error of the first"] for row in rows[:-1]], dtype=float)
+    page.holds(
+        "critical speeds of condensed rotors sink to those of the whole one as modes are added",
+        bool((first > -ROUND_OFF).all() and (np.diff(worst) <= ROUND_OFF).all()),
+        why="whirl at the speed of the shaft is an eigenproblem of Rayleigh's quotient: shapes "
+        "that are left out hold the rotor",
+        source="Rayleigh and Ritz; the whole rotor",
+    )
+    page.at_most(
+        f"six critical speeds with {MODES[-1]} modes, largest error",
+        float(worst[-1]),
+        1e-3,
+        why="a tenth of a per cent, below the rounding of the printed dimensions",
+        source="the whole rotor",
+        basis="self-consistency",
+    )
 
 
 def check_printed(page: Page, found: Whirl, order: int, printed: tuple[float, ...]) -> None:

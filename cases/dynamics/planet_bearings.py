@@ -4,10 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_drivetrain.bearing import Bearing, cylindrical, equilibrium, forces, load_zones, pressures
+from fe_drivetrain.bearing import Bearing, cylindrical, load_zones, pressures
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.dynamics.carrier_in_size import carrier_in_size
 from fe_drivetrain.cases.dynamics.own_planet_bearings import own
+from fe_drivetrain.cases.dynamics.upwind_model import tight_pins
 from fe_drivetrain.common import Floats
 from fe_drivetrain.dynamics import (
     Flexible,
@@ -208,11 +209,10 @@ def scaled(carrier: Flexible, factor: float) -> Flexible:
 
 def linearised(machine: Machine) -> Machine:
     """Pins as stiff as the rollers without clearance are at the mean load."""
-    load = np.hypot(TORQUE / RADIUS / 6, 9440.0 / SPREAD)  # tangential, and of the helix
-    K = forces(PLANET, equilibrium(PLANET, [0, 0, load, 0, 0]).displacements)[1][0]
+    across = tight_pins(machine, PLANET, TORQUE)
     data = machine.model_dump(exclude_none=True)
     for pin in data["stages"][0]["pins"]:
-        pin["stiffness"] = (pin["stiffness"][0], K[2, 2], K[2, 2], 0.0, K[3, 3], K[3, 3])
+        pin["stiffness"] = (pin["stiffness"][0], *across)
     return Machine.model_validate(data)
 
 

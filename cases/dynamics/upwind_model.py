@@ -383,12 +383,29 @@ def linearised(machine: Machine, rollers: Bearing, torque: float) -> MachineTabl
 
     Parameters
     ----------
+    machine, rollers, torque : Machine, Bearing, float
+        See `tight_pins`.
+    """
+    across = tight_pins(machine, rollers, torque)
+    return with_pins(machine, lambda old: (np.ravel(old)[0], *across))
+
+
+def tight_pins(machine: Machine, rollers: Bearing, torque: float) -> tuple[float, ...]:
+    """Stiffness of a planet's bearing without clearance at the mean load, but along its axis.
+
+    Parameters
+    ----------
     machine : Machine
         With a planetary first stage.
     rollers : Bearing
         Rollers of each bearing.
     torque : float
         On the rotor [N m].
+
+    Returns
+    -------
+    tuple of float
+        Along y and z [N/m], then about x, y and z [N m/rad].
     """
     stage = machine.stages[0]
     assert isinstance(stage, PlanetaryData)
@@ -400,10 +417,7 @@ def linearised(machine: Machine, rollers: Bearing, torque: float) -> MachineTabl
     load = float(np.hypot(tangential, couple / (max(offsets) - min(offsets))))
     tight = rollers.with_rows(clearance=0.0)
     K = forces(tight, equilibrium(tight, [0, 0, load, 0, 0]).displacements)[1][0]
-    return with_pins(
-        machine,
-        lambda old: (np.ravel(old)[0], K[2, 2], K[2, 2], 0.0, K[3, 3], K[3, 3]),
-    )
+    return float(K[2, 2]), float(K[2, 2]), 0.0, float(K[3, 3]), float(K[3, 3])
 
 
 def with_pins(

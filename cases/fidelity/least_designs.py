@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.cases.fidelity.least_shafts import bending_stiffness, least_bored_shaft
 from fe_drivetrain.cases.fidelity.searched_shafts import (
     LENGTHS,
     OUTER,
@@ -16,6 +15,7 @@ from fe_drivetrain.cases.fidelity.searched_shafts import (
     stepped_scene,
     timed_levels,
 )
+from fe_drivetrain.cases.references.least_shafts import bending_stiffness, least_bored_shaft
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.comparison import FOUR_DIGITS, decades, safe_range

@@ -126,7 +126,8 @@ class GearsRequest:
         typer.Option(
             "--lubricant",
             metavar="GRADE",
-            help="Oil, as in 'VG 320' or 320 (mm2/s at 40 degC). Default: operation.lubricant.",
+            help="Oil, as in 'VG 320' or 320 (mm2/s at 40 degC; of grades beside 220, 320 and "
+            "460 with a viscosity index of 95). Default: operation.lubricant.",
         ),
     ] = None
     rotor_speed: Annotated[

@@ -13,11 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.short_repr import short_repr
 
 Functions = Callable[[Floats], Floats]
-"""(1 + m,) of a point (d,): the value, and m limits, each at most zero where it is kept."""
+"""(1 + m,) of a point (d,): the value, and m limits, each at most zero where it is kept; all
+infinite where there is no such point."""
 
 STEP = 1e-4
 """Step of a difference, of the range of a variable: its error is some 1e-8 of a smooth function."""
@@ -27,6 +28,9 @@ ACTIVE = 1e-5
 
 _ACCURACY = 1e-10
 _STEPS = 40
+_BALANCE = 1e-4  # of the gradient: what multipliers may leave and still count as balancing it
+_NOWHERE = 10.0  # value and limits of a point that does not exist: worse than any nearby
+_HALVINGS = 20  # towards the first start, until a start exists
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +67,9 @@ class Minimum:
 
 
 def slopes(functions: Functions, at: Floats, step: float = STEP) -> Floats:
-    """(1 + m, d) derivatives by central differences; at the ends of ranges by points inside alone.
+    """(1 + m, d) derivatives by central differences.
+
+    At the ends of ranges, and beside points that do not exist, by points of the other side alone.
 
     Parameters
     ----------
@@ -73,16 +79,30 @@ def slopes(functions: Functions, at: Floats, step: float = STEP) -> Floats:
         The point, each variable from 0 to 1.
     step : float
         Step of the differences.
+
+    Returns
+    -------
+    ndarray, (1 + m, d)
+        Zero along a variable that has no such points on either side.
     """
+
+    def one_sided(unit: Floats, way: float) -> Floats:
+        first, second, third = (functions(at + way * n * unit) for n in (0, 1, 2))
+        if not np.isfinite([first, second, third]).all():
+            return np.zeros_like(first)
+        return np.asarray(way * (-3.0 * first + 4.0 * second - third) / (2.0 * step))
+
     columns = []
     for k in range(len(at)):
         unit = np.eye(len(at))[k] * step
         if at[k] < step or at[k] > 1.0 - step:
-            way = 1.0 if at[k] < step else -1.0
-            first, second, third = (functions(at + way * n * unit) for n in (0, 1, 2))
-            columns.append(way * (-3.0 * first + 4.0 * second - third) / (2.0 * step))
+            columns.append(one_sided(unit, 1.0 if at[k] < step else -1.0))
+            continue
+        before, behind = functions(at - unit), functions(at + unit)
+        if np.isfinite(before).all() and np.isfinite(behind).all():
+            columns.append((behind - before) / (2.0 * step))
         else:
-            columns.append((functions(at + unit) - functions(at - unit)) / (2.0 * step))
+            columns.append(one_sided(unit, 1.0 if np.isfinite(behind).all() else -1.0))
     return np.column_stack(columns)
 
 
@@ -106,8 +126,25 @@ def constrained_minimum(functions: Functions, start: Floats, step: float = STEP)
     if len(start) == 0:
         values = functions(start)
         return Minimum(start, values, np.zeros(len(values) - 1), np.zeros(0), 0.0)
-    at = _solved(functions, start, step, lambda x: slopes(functions, x, step))
+    at = _solved(functions, start, lambda x: slopes(functions, x, step))
     return _judged(functions(at), slopes(functions, at, step), at)
+
+
+def nearest_start(functions: Functions, start: Floats, known: Floats) -> Floats:
+    """A start, drawn towards a point that exists until it exists itself.
+
+    Parameters
+    ----------
+    functions : callable
+        Value and limits of a point.
+    start, known : ndarray, (d,)
+        The start, and a point that exists.
+    """
+    for _ in range(_HALVINGS):
+        if np.isfinite(functions(start)).all():
+            return start
+        start = 0.5 * (start + known)
+    return known
 
 
 def least_violation(functions: Functions, start: Floats, step: float = STEP) -> Minimum:
@@ -147,11 +184,56 @@ def least_violation(functions: Functions, start: Floats, step: float = STEP) -> 
         return np.column_stack([found, last])
 
     begin = np.append(start, worst / (1.0 + worst))
-    x = _solved(raised, begin, step, raised_slopes)
+    x = _solved(raised, begin, raised_slopes)
     judged = _judged(raised(x), raised_slopes(x), x)
     values = functions(x[:-1])
     shares = judged.multipliers / max(judged.multipliers.sum(), 1e-300)
     return Minimum(x[:-1], values, shares, judged.at_ends[:-1], judged.residual)
+
+
+def multiplier_ranges(
+    gradients: Floats, minimum: Minimum, groups: Sequence[int], count: int
+) -> Floats:
+    """Least and largest sum of the multipliers of each group of limits that balance a minimum.
+
+    Where several limits meet and pull alike, many multipliers balance the gradient as well: what
+    one limit costs alone is then open (degenerate minima: Nocedal and Wright 2006, 12.2).
+
+    Parameters
+    ----------
+    gradients : ndarray, (1 + m, d)
+        Derivatives of the value and of all limits at the minimum.
+    minimum : Minimum
+        The minimum.
+    groups : sequence of int
+        Group of each of the m limits, from 0.
+    count : int
+        Number of groups.
+
+    Returns
+    -------
+    ndarray, (count, 2)
+        Equal up to a share of 1e-4 of the gradient where multipliers are unique.
+    """
+    from scipy.optimize import linprog
+
+    active, numbers = _active(minimum.values, gradients, minimum.at)
+    found = np.zeros((count, 2))
+    size = float(np.linalg.norm(gradients[0]))
+    if not active.shape[1] or size == 0.0:
+        return found
+    at_ends = np.abs(minimum.at_ends)
+    own = np.concatenate([minimum.multipliers[numbers], at_ends[_ends(minimum.at)]])
+    balanced = active @ own
+    A = np.vstack([active, -active]) / size
+    b = np.concatenate([balanced, -balanced]) / size + _BALANCE
+    for group in {groups[number] for number in numbers}:
+        of = np.zeros(len(own))
+        of[: len(numbers)] = [float(groups[number] == group) for number in numbers]
+        for k, way in enumerate((1.0, -1.0)):
+            solved = linprog(way * of, A_ub=A, b_ub=b, bounds=(0.0, None))
+            found[group, k] = of @ own if solved.x is None else way * solved.fun
+    return found
 
 
 def starting_points(first: Floats, count: int, seed: int = 0) -> list[Floats]:
@@ -174,29 +256,39 @@ def starting_points(first: Floats, count: int, seed: int = 0) -> list[Floats]:
     return [first, *rest]
 
 
-def _solved(
-    functions: Functions, start: Floats, step: float, gradients: Callable[[Floats], Floats]
-) -> Floats:
-    """The point at which SLSQP ends."""
+def _solved(functions: Functions, start: Floats, gradients: Callable[[Floats], Floats]) -> Floats:
+    """The point at which SLSQP ends; the last that exists, where that one does not."""
     from scipy.optimize import minimize
 
-    def limits(x: Floats) -> Floats:
-        return np.asarray(-functions(x)[1:])
-
-    def limit_slopes(x: Floats) -> Floats:
-        return np.asarray(-gradients(x)[1:])
-
     begin = np.clip(start, 0.0, 1.0)
+    last = [begin]
+
+    def known(x: Floats) -> Floats:
+        found = functions(x)
+        if np.isfinite(found).all():
+            return found
+        return np.full(len(found), _NOWHERE)
+
+    def value_slopes(x: Floats) -> Floats:
+        if np.isfinite(functions(x)).all():
+            last[0] = np.array(x)
+        return np.asarray(gradients(x)[0])
+
     found = minimize(
-        lambda x: float(functions(x)[0]),
+        lambda x: float(known(x)[0]),
         begin,
-        jac=lambda x: gradients(x)[0],
+        jac=value_slopes,
         bounds=[(0.0, 1.0)] * len(begin),
-        constraints={"type": "ineq", "fun": limits, "jac": limit_slopes},
+        constraints={
+            "type": "ineq",
+            "fun": lambda x: -known(x)[1:],
+            "jac": lambda x: -gradients(x)[1:],
+        },
         method="SLSQP",
         options={"ftol": _ACCURACY, "maxiter": _STEPS},
     )
-    return np.asarray(np.clip(found.x, 0.0, 1.0), dtype=np.float64)
+    at = np.asarray(np.clip(found.x, 0.0, 1.0), dtype=np.float64)
+    return at if np.isfinite(functions(at)).all() else last[0]
 
 
 def _judged(values: Floats, gradients: Floats, at: Floats) -> Minimum:
@@ -204,21 +296,31 @@ def _judged(values: Floats, gradients: Floats, at: Floats) -> Minimum:
     from scipy.optimize import nnls
 
     d, m = len(at), len(values) - 1
-    limits = np.flatnonzero(values[1:] > -ACTIVE)
-    low, high = np.flatnonzero(at < ACTIVE), np.flatnonzero(at > 1.0 - ACTIVE)
-    ends = np.zeros((d, len(low) + len(high)))
-    ends[low, np.arange(len(low))] = -1.0
-    ends[high, len(low) + np.arange(len(high))] = 1.0
-    active = np.hstack([gradients[1 + limits].T, ends])
+    if not np.isfinite(values).all():
+        return Minimum(at, values, np.zeros(m), np.zeros(d), np.inf)
+    active, limits = _active(values, gradients, at)
     multipliers, at_ends = np.zeros(m), np.zeros(d)
     size = float(np.linalg.norm(gradients[0]))
     left = size
     if active.shape[1]:
         found, left = nnls(active, -gradients[0])
         multipliers[limits] = found[: len(limits)]
-        at_ends[low] = -found[len(limits) : len(limits) + len(low)]
-        at_ends[high] = found[len(limits) + len(low) :]
+        ends = _ends(at)
+        at_ends[ends] = found[len(limits) :] * np.where(at[ends] < 0.5, -1.0, 1.0)
     return Minimum(at, values, multipliers, at_ends, left / size if size > 0.0 else 0.0)
+
+
+def _ends(at: Floats) -> Ints:
+    """Variables that are at an end of their range."""
+    return np.flatnonzero((at < ACTIVE) | (at > 1.0 - ACTIVE))
+
+
+def _active(values: Floats, gradients: Floats, at: Floats) -> tuple[Floats, Ints]:
+    """Gradients (d, k) of active limits, then of ends of ranges; and numbers of these limits."""
+    limits, ends = np.flatnonzero(values[1:] > -ACTIVE), _ends(at)
+    outwards = np.zeros((len(at), len(ends)))
+    outwards[ends, np.arange(len(ends))] = np.where(at[ends] < 0.5, -1.0, 1.0)
+    return np.hstack([gradients[1 + limits].T, outwards]), limits
 
 
 def distinct_minima(found: Sequence[Minimum], allowed: float, apart: float = 1e-3) -> list[Minimum]:

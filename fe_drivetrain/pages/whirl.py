@@ -23,8 +23,10 @@ def show_whirl(run: Run, page: Page, result: WhirlResult) -> None:
     """
     page.section("Shafts")
     page.add(result.chart())
+    meshed = any(shaft.without_meshes is not None for shaft in result.shafts)
     page.table(
-        "Each shaft: first critical speed that unbalance excites, with gear meshes and without, "
+        "Each shaft: first critical speed that unbalance excites, "
+        f"{'with gear meshes and without, ' if meshed else ''}"
         "whirl and bearing force by unbalance at the largest speed, stability",
         [shaft_row(shaft) for shaft in result.shafts],
     )

@@ -10,12 +10,12 @@ values.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison.constrained_minimum import (
@@ -23,6 +23,9 @@ from fe_drivetrain.comparison.constrained_minimum import (
     constrained_minimum,
     distinct_minima,
     least_violation,
+    multiplier_ranges,
+    nearest_start,
+    slopes,
 )
 from fe_drivetrain.shafts.uncertainty.kept_rows import EVERY
 from fe_drivetrain.studies.design_request import Limit
@@ -34,9 +37,17 @@ MARGIN = 1e-4
 KEPT = 0.5 * MARGIN
 """Share of a limit that a search may leave of its margin."""
 
+SETTLED = 2e-4
+"""Share of the least value that ends a search: what would gain less is as good."""
+
+FAR = 1e-3
+"""Share of a range: places that are less apart are one."""
+
+OPEN = 0.01
+"""Share of the largest price: one that may change by more is open."""
+
 _LEAST = 1e-12  # of a limit: what is less counts as this
 _STILL = 1e-6  # of the ranges: a move that is less tells nothing of how ratios change
-_UNBUILT = 10.0  # value and limits of what cannot be built: worse than any design nearby
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,11 +163,11 @@ class Problem:
         return {name: values * factors.get(name, 1.0) for name, values in found.items()}
 
     def functions(self, at: Floats) -> Floats:
-        """Value and limits as `constrained_minimum` takes them, all relative."""
+        """Value and limits, all relative; infinite of a design that cannot be built."""
         found = self.corrected(at)
         rows = self.rows
         if found is None:
-            return np.full(1 + len(rows), _UNBUILT)
+            return np.full(1 + len(rows), np.inf)
         parts = [found[self.minimise][:1] / self.size]
         for limit in self.limits:
             parts.append(self.excess(limit, found[limit.name]) + MARGIN)
@@ -190,11 +201,20 @@ class Problem:
         value = float(minimum.values[0])
         return [price / value for price in found]
 
+    def price_ranges(self, minimum: Minimum) -> Floats:
+        """(limits, 2) least and largest size of each of `prices` that balances the minimum."""
+        gradients = slopes(self.functions, minimum.at)
+        count = len(self.limits)
+        return multiplier_ranges(gradients, minimum, self.rows, count) / float(minimum.values[0])
+
 
 def minima_of(
     problem: Problem, starts: list[Floats], report: Callable[[str], object], path: list[Trial]
 ) -> list[Minimum]:
     """Minima from each of several starts; what is tried on the way goes into ``path``.
+
+    A design that cannot be built is a trial that is rejected; a start of that kind is drawn towards
+    the first one.
 
     Parameters
     ----------
@@ -213,16 +233,18 @@ def minima_of(
         def functions(at: Floats, number: int = number) -> Floats:
             values = problem.functions(at)
             count = problem.trials.made + problem.trials.kept
-            path.append(
-                Trial(number, count, float(values[0]) * problem.size, float(values[1:].max()))
-            )
+            if np.isfinite(values[0]):
+                path.append(
+                    Trial(number, count, float(values[0]) * problem.size, float(values[1:].max()))
+                )
             now = time.monotonic()
             if now - shown[0] > EVERY:
                 shown[0] = now
                 report(f"start {number} of {len(starts)}, {count} designs")
             return values
 
-        found.append(constrained_minimum(functions, start))
+        begin = nearest_start(problem.functions, start, starts[0])
+        found.append(constrained_minimum(functions, begin))
     return found
 
 
@@ -245,6 +267,31 @@ def best_of(problem: Problem, found: list[Minimum]) -> list[Minimum]:
     if not kept:
         raise infeasible(problem, min(found, key=lambda one: one.violation).at)
     return kept
+
+
+def flat_minima(first: Minimum, others: Sequence[Minimum]) -> list[Minimum]:
+    """Minima elsewhere that are as good as the first: what shall be least is flat between.
+
+    Parameters
+    ----------
+    first : Minimum
+        The least.
+    others : sequence of Minimum
+        The others.
+    """
+    least = float(first.values[0])
+    return [one for one in others if float(one.values[0]) / least - 1.0 < SETTLED]
+
+
+def open_prices(ranges: Floats) -> Bools:
+    """Whether each price is open, (limits,), see `Problem.price_ranges`.
+
+    Parameters
+    ----------
+    ranges : ndarray, (limits, 2)
+        Least and largest of each.
+    """
+    return np.asarray(ranges[:, 1] - ranges[:, 0] > OPEN * np.abs(ranges).max(initial=0.0))
 
 
 def infeasible(problem: Problem, near: Floats) -> InputError:

@@ -19,24 +19,31 @@ from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.design_levels import CheckedQuantity, checked_quantities
 from fe_drivetrain.studies.design_minima import (
+    FAR,
     KEPT,
     MARGIN,
+    SETTLED,
     Problem,
     Trial,
     best_of,
     correction,
+    flat_minima,
     infeasible,
     minima_of,
 )
 from fe_drivetrain.studies.design_quantities import DesignQuantities
 from fe_drivetrain.studies.design_request import DesignRequest
-from fe_drivetrain.studies.design_statement import FrontPoint, shown_size, state_search
+from fe_drivetrain.studies.design_statement import (
+    FrontPoint,
+    shown_size,
+    state_gradients,
+    state_search,
+)
 from fe_drivetrain.studies.design_trials import DesignTrials
 from fe_drivetrain.studies.result import Result
 
 STARTS = 4
 _ROUNDS = 8  # of checks and corrections
-_SETTLED = 2e-4  # of the least value: a search that gains less has ended
 _FRONT = np.geomspace(0.6, 1.6, 9)  # of the limit whose front is shown
 
 
@@ -114,14 +121,21 @@ class SearchResult(Result):
 
 @dataclass(frozen=True, eq=False)
 class _Candidate:
-    """The minimum of one combination of values of lists, and what a better level said of it."""
+    """The minimum of one combination of values of lists, and what a better level said of it.
+
+    ``first`` and ``others`` are minima of the cheap level alone, ``corrected`` is the last of the
+    corrected one, whose multipliers are the prices.
+    """
 
     problem: Problem
     minimum: Minimum
+    first: Minimum
     agreeing: int
     others: list[Minimum]
     path: list[Trial]
     checked: Mapping[str, CheckedQuantity] = field(default_factory=dict)
+    corrected: Minimum | None = None
+    unsettled: str = ""
 
     @property
     def value(self) -> float:
@@ -191,7 +205,10 @@ def search(
     problem = best.problem
     values = problem.trials.values_at(best.minimum.at)
     prices = _prices(best)
-    state_search(found, best.problem, best.minimum, best.checked, prices, now)
+    cautions = [best.unsettled] if best.unsettled else []
+    state_search(found, best.problem, best.minimum, best.checked, prices, now, cautions)
+    assert best.corrected is not None
+    state_gradients(found, problem, best.corrected)
     made = sum(one.problem.trials.made + one.problem.trials.kept for one in candidates)
     _state_starts(found, best, starts, made, conflicts)
     found.data("front", [one.record(problem.trials.asked.units) for one in points])
@@ -259,8 +276,8 @@ def _candidates(
             continue
         finally:
             trials.keep()
-        near = [np.abs(one.at - kept[0].at).max(initial=0.0) < 1e-3 for one in minima]
-        found.append(_Candidate(problem, kept[0], sum(near), kept[1:], path))
+        near = [np.abs(one.at - kept[0].at).max(initial=0.0) < FAR for one in minima]
+        found.append(_Candidate(problem, kept[0], kept[0], sum(near), kept[1:], path))
     if not found:
         raise conflicts[0]
     return sorted(found, key=lambda one: one.value), conflicts
@@ -292,13 +309,20 @@ def _corrected(one: _Candidate, tolerance: float, report: Callable[[str], object
     problem, minimum, path = one.problem, one.minimum, list(one.path)
     trials = problem.trials
     best: _Candidate | None = None
+    gain, why = np.nan, ""
     for number in range(1, _ROUNDS + 1):
-        checked = checked_quantities(
-            trials.asked,
-            trials.design(minimum.at),
-            tolerance,
-            _named(report, f"round {number}: "),
-        )
+        try:
+            checked = checked_quantities(
+                trials.asked,
+                trials.design(minimum.at),
+                tolerance,
+                _named(report, f"round {number}: "),
+            )
+        except InputError as error:
+            if best is None:
+                raise
+            why = f"the better level cannot build the next design: {error}"
+            break
         cheap = trials.quantities(minimum.at)
         assert cheap is not None
         better = {name: of.values for name, of in checked.items()}
@@ -315,11 +339,22 @@ def _corrected(one: _Candidate, tolerance: float, report: Callable[[str], object
         if kept and (best is None or values[0] < best.minimum.values[0]):
             # what was checked is what is shown
             shown = replace(minimum, at=before, values=values)
-            best = replace(one, problem=problem, minimum=shown, path=path, checked=checked)
-        if kept and values[0] - minimum.values[0] < _SETTLED * values[0]:
+            best = replace(
+                one,
+                problem=problem,
+                minimum=shown,
+                path=path,
+                checked=checked,
+                corrected=minimum,
+            )
+        gain = float(values[0] - minimum.values[0]) / float(values[0])
+        if kept and gain < SETTLED:
             break
+    else:
+        why = f"the last of {_ROUNDS} rounds of checks still moved it by {100 * abs(gain):.2g} %"
     if best is not None:
-        return best
+        said = f"The search has not settled: {why}; a lesser {problem.minimise} may be left."
+        return replace(best, unsettled=said if why else "")
     raise InputError(
         f"levels 1 and {', '.join({of.level for of in checked.values()})} do not agree on a design "
         f"after {_ROUNDS} rounds: make ranges narrower, or the tolerance larger"
@@ -382,14 +417,38 @@ def _state_starts(
             f"{best.agreeing} of {starts} starts end at this design; {made} designs were computed "
             "at the cheap level."
         )
-    for other in best.others:
-        value = float(other.values[0]) / float(best.minimum.values[0])
+    _state_others(found, best)
+    if rejected := best.problem.trials.rejected:
         found.note(
-            f"Another start ends at another design, {100 * (value - 1.0):+.3g} % in "
-            f"{best.problem.minimise}: more starts may find more."
+            f"{rejected} designs on the way could not be built and were rejected: "
+            f"{best.problem.trials.fault}"
         )
     for conflict in conflicts:
         found.note(f"A combination of values is left out: {conflict}")
+
+
+def _state_others(found: Findings, best: _Candidate) -> None:
+    """Where other starts end: elsewhere at the same value, which is flat then, or at another."""
+    keys = list(best.problem.trials.asked.request.ranges)
+    least, name = float(best.first.values[0]), best.problem.minimise
+    flat = flat_minima(best.first, best.others)
+    if flat:
+        apart = np.max([np.abs(one.at - best.first.at) for one in flat], axis=0)
+        moved = ", ".join(
+            f"{key} by {100 * far:.2g} %" for key, far in zip(keys, apart, strict=True) if far > FAR
+        )
+        found.note(
+            f"The least {name} is flat: other starts end at designs with less than "
+            f"{100 * SETTLED:g} % more that differ in {moved} of the range; any of them serves.",
+            first=True,
+        )
+    for other in best.others:
+        if other not in flat:
+            more = 100.0 * (float(other.values[0]) / least - 1.0)
+            found.note(
+                f"Another start ends at another design, {more:+.3g} % in {name}: more starts may "
+                "find more."
+            )
 
 
 def _stated(

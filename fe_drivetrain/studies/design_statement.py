@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.comparison.constrained_minimum import ACTIVE, Minimum, slopes
+from fe_drivetrain.comparison.constrained_minimum import ACTIVE, STEP, Minimum, slopes
 from fe_drivetrain.drivetrain_file.units import unit_of_key
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.design_levels import CheckedQuantity
-from fe_drivetrain.studies.design_minima import Problem
+from fe_drivetrain.studies.design_minima import Problem, open_prices
 from fe_drivetrain.studies.design_request import Limit
 
 BALANCED = 1e-3
@@ -76,6 +76,7 @@ def state_search(
     checked: Mapping[str, CheckedQuantity],
     prices: Mapping[str, float],
     now: Mapping[str, Floats],
+    cautions: Sequence[str] = (),
 ) -> None:
     """State the design: answer, checks of all limits, tables, and what has no effect.
 
@@ -91,6 +92,8 @@ def state_search(
         See `fe_drivetrain.studies.design_search.SearchResult`.
     now : mapping of str to ndarray
         Quantities of the drivetrain as it is, at the cheap level.
+    cautions : sequence of str
+        What limits the answer before all else.
     """
     asked = problem.trials.asked
     for limit in problem.limits:
@@ -107,7 +110,45 @@ def state_search(
     _explain(found, problem, minimum)
     found.data("design", design_rows(problem, minimum))
     found.data("limits", limit_rows(problem, minimum, checked, prices, now))
-    _answer(found, problem, minimum, checked, prices, now)
+    _answer(found, problem, minimum, checked, prices, now, cautions)
+
+
+def state_gradients(found: Findings, problem: Problem, minimum: Minimum) -> None:
+    """State whether gradients depend on their step, and name limits whose prices are open.
+
+    Parameters
+    ----------
+    found : Findings
+        Takes it.
+    problem, minimum : Problem, Minimum
+        The search as corrected last, and its own minimum.
+    """
+    if not len(minimum.at):
+        return
+    used, halved = (slopes(problem.functions, minimum.at, step) for step in (STEP, 0.5 * STEP))
+    apart = np.linalg.norm(used - halved, axis=1)
+    size = max(float(np.linalg.norm(used[0])), _NOTHING)
+    found.at_most(
+        "change of the balance of gradients with half the step of their differences",
+        float(apart[0] + minimum.multipliers @ apart[1:]) / size,
+        BALANCED,
+        why="gradients are differences of the cheap level; a minimum and its prices are as good as "
+        "these",
+        source=f"steps of {STEP:g} and {0.5 * STEP:g} of each range",
+        basis="self-consistency",
+    )
+    wide = open_prices(problem.price_ranges(minimum))
+    names = [str(limit) for limit, far in zip(problem.limits, wide, strict=True) if far]
+    if len(names) > 1:
+        found.note(
+            f"{' and '.join(names)} are met together and pull alike: what one of them costs alone "
+            "is open, only what all cost together is known."
+        )
+    elif names:
+        found.note(
+            f"{names[0]} is met just where a range ends: its price is of tightening it, and "
+            "relaxed it may gain nothing."
+        )
 
 
 def _worst(limit: Limit, of: CheckedQuantity) -> int:
@@ -153,6 +194,7 @@ def _answer(
     checked: Mapping[str, CheckedQuantity],
     prices: Mapping[str, float],
     now: Mapping[str, Floats],
+    first: Sequence[str],
 ) -> None:
     """State the least value, what it was, and which limits decide."""
     name, asked = problem.minimise, problem.trials.asked
@@ -177,7 +219,7 @@ def _answer(
     figures = figures[:_FIGURES]
     if len(figures) < 3:
         figures.append(found.value("limits that decide", len(active)))
-    cautions = []
+    cautions = list(first)
     for limit in problem.limits:
         of = checked[limit.name]
         k, size = _worst(limit, of), limit.size(asked.units[limit.name]) * limit.value

@@ -64,6 +64,11 @@ class DesignTrials:
         self._last = time.monotonic()
         self._load()
 
+    @property
+    def rejected(self) -> int:
+        """Number of designs that could not be built."""
+        return sum(row is None for row in self._known.values())
+
     def values_at(self, at: Floats) -> dict[str, Any]:
         """Values of all that varies, by key.
 

@@ -8,13 +8,7 @@ from time import process_time
 
 import numpy as np
 
-from fe_drivetrain.bearing.catalogue import (
-    Entry,
-    Named,
-    fitted_entry,
-    read_bearing_catalogue,
-)
-from fe_drivetrain.bearing.catalogue_page import CataloguePage
+from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
 from fe_drivetrain.bearing_life.life.lubricants import GRADES, Lubricant
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import GRAVITY
@@ -41,6 +35,7 @@ from fe_drivetrain.studies.gear_machine import GearTrain
 from fe_drivetrain.studies.gear_meshes import GearMesh
 from fe_drivetrain.studies.gear_spectra import TORQUE
 from fe_drivetrain.studies.gearbox_bearings import gearbox_oil
+from fe_drivetrain.studies.named_bearings import entry_of
 from fe_drivetrain.studies.rolling_bearings import Oil
 
 CONSTANT = "constant efficiency"
@@ -166,7 +161,7 @@ def drivetrain_losses(
     Raises
     ------
     InputError
-        No speed of the rotor is known, or the oil is of a grade that has no viscosity at 100 degC.
+        No speed of the rotor is known, or the oil is of a grade that is not known.
     """
     oil = check_losses(drivetrain, train, grade)
     machine = train.machine
@@ -223,12 +218,6 @@ def check_losses(drivetrain: Drivetrain, train: GearTrain, grade: float | None) 
     operation = drivetrain.operation
     stated = None if operation is None else operation.lubricant
     name = stated if grade is None else f"VG {grade:g}"
-    if name is not None and name not in GRADES:
-        known = ", ".join(one for one in GRADES if one.startswith("VG"))
-        raise InputError(
-            f"losses: the viscosity of {name} at 100 degC is not known, and so not at the "
-            f"temperature of the oil: use one of {known} in operation.lubricant"
-        )
     return gearbox_oil(name, None if operation is None else operation.temperature, "-/17/14")
 
 
@@ -250,18 +239,14 @@ def lossy_bearings(
     grease = Film(1e-6 * GREASE.viscosity, "grease")
     found, unknown = [], []
     for name in ring_speeds(machine):
-        entry = _entry(rows[name].catalogue, known) if name in rows else None
-        if entry is None:
+        named = rows[name].catalogue if name in rows else None
+        if named is None or (isinstance(named, str) and named not in known):
             unknown.append(name)
             continue
+        entry = entry_of(name, named, known)
         place = _place(held.get(name, name), shafts)
         found.append(LossyBearing(name, place, entry, grease if name in main else film))
     return tuple(found), tuple(unknown)
-
-
-def _entry(named: Named | None, known: Mapping[str, Entry]) -> Entry | None:
-    """The entry of a catalogue's name or page; None where there is none."""
-    return fitted_entry(named) if isinstance(named, CataloguePage) else known.get(str(named))
 
 
 def _seals(drivetrain: Drivetrain, machine: MachineTable) -> list[LossySeal]:

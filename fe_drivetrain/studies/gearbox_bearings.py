@@ -13,7 +13,7 @@ import numpy as np
 
 from fe_drivetrain.bearing.catalogue import Entry, Named, name_of, read_bearing_catalogue
 from fe_drivetrain.bearing_life.coupled.reaction_paths import ReactionPath
-from fe_drivetrain.bearing_life.life.lubricants import GRADES, Lubricant
+from fe_drivetrain.bearing_life.life.lubricants import GRADES, Lubricant, grade_viscosities
 from fe_drivetrain.bearing_life.life.rated import RatedBearing, rated_from_catalogue
 from fe_drivetrain.bearing_life.life.roller_models import rigid_rings
 from fe_drivetrain.common.arguments import argument
@@ -202,7 +202,8 @@ def gearbox_oil(
     Parameters
     ----------
     grade : str or tuple of float or None
-        A grade, or viscosities at 40 and at 100 degC [mm2/s]; None takes VG 320.
+        A grade, as `fe_drivetrain.bearing_life.life.grade_viscosities` takes it, or viscosities at
+        40 and at 100 degC [mm2/s]; None takes VG 320.
     temperature : float or None
         Temperature of bearings in operation [degC]; None takes 60.
     cleanliness : str or None
@@ -215,15 +216,7 @@ def gearbox_oil(
     """
     given = {"lubricant": grade, "temperature": temperature, "cleanliness": cleanliness}
     name = "VG 320" if grade is None else grade
-    if isinstance(name, str):
-        if name not in GRADES:
-            raise InputError(
-                f"{argument('LifeOptions.gearbox_lubricant', name)}: choose {', '.join(GRADES)}, "
-                "or give the viscosity at 40 and at 100 degC in mm2/s"
-            )
-        at_40, at_100 = GRADES[name]
-    else:
-        at_40, at_100 = name
+    at_40, at_100 = grade_viscosities(name) if isinstance(name, str) else name
     lubricant = Lubricant(
         at_40,
         at_100,
@@ -231,7 +224,10 @@ def gearbox_oil(
         "filtered oil",
         cleanliness or "-/17/14",
     )
-    return Oil(lubricant, tuple(key for key, value in given.items() if value is None))
+    assumed = [key for key, value in given.items() if value is None]
+    if isinstance(name, str) and name not in GRADES:
+        assumed.append("viscosity index")
+    return Oil(lubricant, tuple(assumed))
 
 
 @dataclass(frozen=True)

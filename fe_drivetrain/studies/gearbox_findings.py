@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from fe_drivetrain.bearing_life.life.lubricants import VISCOSITY_INDEX
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gearbox_bearings import MachineBearings
@@ -110,6 +111,8 @@ def assume_reactions(
             stated = "assumed, not stated" if name in oil.assumed else "as stated"
             option = argument(f"LifeOptions.gearbox_{name}")
             found.assume(f"gearbox oil: {name}", value, unit, f"{stated}; {option}")
+        if "viscosity index" in oil.assumed:
+            found.assume("gearbox oil: viscosity index", VISCOSITY_INDEX, "-", "assumed: mineral")
     _flanges(found, asked)
 
 

@@ -23,7 +23,7 @@ from fe_drivetrain.studies.life_assumptions import in_words, in_years
 from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.life_sums import BearingLife, scatter
 from fe_drivetrain.studies.rolling_bearings import rollers_in_words, row_names
-from fe_drivetrain.studies.thermal_tables import thermal_caution
+from fe_drivetrain.studies.thermal_tables import thermal_caution, thermal_tables
 from fe_drivetrain.studies.unused import choices_not_used, speed_not_used
 from fe_drivetrain.turbine_loads.histories.sites import Site
 from fe_drivetrain.turbine_loads.hub_loads.recorded import short_name
@@ -186,7 +186,7 @@ def cautions(
     for life in _spoken_of(lives):
         if sentence := in_words(life.name, life.years["L10mr"], life.assumptions):
             found.note(sentence)
-    if isinstance(drivetrain, Scene) and (heat := thermal_caution(drivetrain)):
+    if isinstance(drivetrain, Scene) and (heat := thermal_caution(thermal_tables(drivetrain))):
         found.note(f"{heat} No life has these.", first=True)
     files = [one.file for one in lives[0].files]
     vertical = {short_name(one.file, files): one.vertical for one in lives[0].files}

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from fe_drivetrain.bearing_life.life.lubricants import VISCOSITY_INDEX
+from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.dynamics.bodies.power_losses import Losses
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import bars, chart, trace
 from fe_drivetrain.report.number_text import formatted
@@ -19,6 +22,7 @@ from fe_drivetrain.studies.gear_losses import (
 )
 
 EFFICIENCY = "efficiency of the drivetrain at the reference torque [%]"
+OVER_LIFE = "efficiency over the energy of all classes of the spectrum [%]"
 GENERATOR = "torque at the generator at the reference torque [kN m]"
 HEAT = "heat at the reference torque [kW]"
 _MWH = 3.6e9
@@ -38,6 +42,9 @@ def state_losses(found: Findings, losses: DrivetrainLosses) -> None:
     own, band = losses.answer.losses, losses.band
     whole, speed = float(own.heat[:, 0].sum()), float(abs(own.speed[0]))
     found.found(EFFICIENCY, 100.0 * float(own.efficiency[0]), 100.0 * _relative(losses))
+    over_life = life_efficiency(losses)
+    if over_life is not None:
+        found.found(OVER_LIFE, *(100.0 * part for part in over_life))
     found.found(HEAT, whole / 1e3, float(band[0]) * speed / 1e3)
     torque = float(own.generator_torque[0])
     found.found(GENERATOR, torque / 1e3, float(band[0]) / abs(own.ratio) / 1e3)
@@ -70,14 +77,51 @@ def state_losses(found: Findings, losses: DrivetrainLosses) -> None:
 
 
 def loss_figures(found: Findings) -> list[KeyFigure]:
-    """Key figures of losses: efficiency, and torque at the generator.
+    """Key figures of losses: efficiencies, and torque at the generator.
 
     Parameters
     ----------
     found : Findings
         With the losses stated.
     """
-    return [found.judged(EFFICIENCY.partition(" [")[0]), found.judged(GENERATOR.partition(" [")[0])]
+    names = [name.partition(" [")[0] for name in (EFFICIENCY, OVER_LIFE, GENERATOR)]
+    known = {one.quantity for one in found.figures}
+    return [found.judged(name) for name in names if name in known]
+
+
+def life_efficiency(losses: DrivetrainLosses) -> tuple[float, float] | None:
+    """Efficiency by energy over all driven classes of the spectrum, and its band [-].
+
+    Parameters
+    ----------
+    losses : DrivetrainLosses
+        What was found.
+
+    Returns
+    -------
+    tuple of float or None
+        None of a single class, whose efficiency is its own.
+    """
+    own = losses.answer.losses
+    share = _by_energy(own, losses.seconds)
+    if share is None:
+        return None
+    at = _driven(own)
+    lost = float((losses.band[at] * np.abs(own.speed[at])) @ losses.seconds[at - 1])
+    return share, lost / float(own.entering[at] @ losses.seconds[at - 1])
+
+
+def _driven(of: Losses) -> Ints:
+    """Numbers of points of the spectrum at which the rotor gives power."""
+    return np.flatnonzero(of.entering[1:] > 0.0) + 1
+
+
+def _by_energy(of: Losses, seconds: Floats) -> float | None:
+    """Energy that leaves over that which enters, over all classes that are driven."""
+    at = _driven(of)
+    if len(at) < 2:
+        return None
+    return float(of.leaving[at] @ seconds[at - 1]) / float(of.entering[at] @ seconds[at - 1])
 
 
 def part_rows(losses: DrivetrainLosses) -> list[Record]:
@@ -137,10 +181,16 @@ def level_rows(losses: DrivetrainLosses) -> list[Record]:
     losses : DrivetrainLosses
         What was found.
     """
+    over_life = {one.name: _by_energy(one.losses, losses.seconds) for one in losses.levels}
     return [
         {
             "level": one.name,
             "efficiency at the reference torque [%]": 100.0 * float(one.losses.efficiency[0]),
+            **(
+                {}
+                if (share := over_life[one.name]) is None
+                else {"efficiency over the spectrum [%]": 100.0 * share}
+            ),
             "heat at the reference torque [kW]": float(one.losses.heat[:, 0].sum()) / 1e3,
             "heat over the life [MWh]": one.energy / _MWH,
             f"difference from {ANSWER} [%]": 100.0 * one.difference,
@@ -202,7 +252,7 @@ def efficiency_chart(losses: DrivetrainLosses) -> Chart | None:
     losses : DrivetrainLosses
         What was found.
     """
-    driven = np.flatnonzero(losses.answer.losses.entering[1:] > 0.0) + 1
+    driven = _driven(losses.answer.losses)
     if len(driven) < 2:
         return None
     order = driven[np.argsort(losses.answer.losses.torque[driven])]
@@ -237,9 +287,13 @@ def _cautions(found: Findings, losses: DrivetrainLosses) -> None:
             first=True,
         )
     found.note(
-        "Churned oil, drag in an oil bath, pumps and the generator are not in the losses, nor "
-        "seals that the file does not state; factors of ISO/TR 14179 and most of SKF's constants "
-        "are second-hand or from memory."
+        "Losses are too low, and the efficiency too high, by what is not in them: oil that gears "
+        "churn, drag of bearings in an oil bath (SKF prints it as a diagram alone), pumps, the "
+        "generator, and seals that the file does not state.",
+        first=not losses.left_out,
+    )
+    found.note(
+        "Factors of ISO/TR 14179 and most of SKF's constants are second-hand or from memory."
     )
 
 
@@ -253,6 +307,14 @@ def _assumptions(found: Findings, losses: DrivetrainLosses) -> None:
         key = f"operation.{name}"
         said = "assumed, not stated" if name in losses.assumed else "as stated"
         found.assume(f"losses, gearbox oil: {name}", value, unit, f"{said}; {key}")
+    if "viscosity index" in losses.assumed:
+        found.assume(
+            "losses, gearbox oil: viscosity index",
+            VISCOSITY_INDEX,
+            "-",
+            f"assumed: {formatted(oil.viscosity_100, 3)} mm2/s at 100 degC by ASTM D2270, from "
+            "memory",
+        )
     found.assume(
         "losses, main bearings: grease",
         GREASE.viscosity_40,

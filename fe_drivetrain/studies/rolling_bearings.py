@@ -87,7 +87,7 @@ class Oil:
     lubricant : Lubricant
         The oil in its bearings.
     assumed : tuple of str
-        Which of "lubricant", "temperature" and "cleanliness" nobody stated.
+        Which of "lubricant", "temperature", "cleanliness" and "viscosity index" nobody stated.
     """
 
     lubricant: Lubricant

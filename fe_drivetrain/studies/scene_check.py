@@ -122,7 +122,8 @@ def check(
     found.seed = None
     parts = {name: float(mass.sum()) for name, mass in model.part_mass.items()}
     found.say(_held(scene, model.n_dofs))
-    if heat := thermal_caution(scene):
+    temperatures = thermal_tables(scene)
+    if heat := thermal_caution(temperatures):
         found.note(heat, first=True)
     with steps.step("levels"):
         costs = forecast(model)
@@ -132,7 +133,7 @@ def check(
         parts=parts,
         described=description(model)
         | clearances
-        | thermal_tables(scene)
+        | temperatures
         | (turning_tables(turning) if turning else {}),
         costs=costs,
         model=model,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, ClassVar
 
 from fe_drivetrain.common.arrays import Floats
@@ -289,13 +290,18 @@ class _Solved:
     entered: EnteredLoads
     seat: SeatStiffness | None
 
+    @cached_property
+    def temperatures(self) -> dict[str, list[Record]]:
+        """What temperatures do, by the levels and by the assembly."""
+        return thermal_tables(self.scene, self.model)
+
     def fields(self) -> dict[str, Any]:
         """Those of the result that need no more than this."""
         return {
             "units": self.levels.units,
             "seat": self.seat,
             "beginning": history_beginning(self.scene, self.levels, self.entered),
-            "described": description(self.model) | thermal_tables(self.scene, self.model),
+            "described": description(self.model) | self.temperatures,
             "model": self.model,
             "response": self.response,
             "levels": self.levels,
@@ -350,7 +356,7 @@ def _cautions(found: Findings, at: _Solved, quick: bool) -> list[str]:
     opening = foot_warnings(at.scene, at.response, together, given.weights, given.gravity)
     doubtful = [given.caution] if given.caution else []
     made = [] if given.own else [given.statement]
-    heat = thermal_caution(at.scene)
+    heat = thermal_caution(at.temperatures)
     warm = [f"{heat} No history has these."] if heat else []
     return [*doubtful, *made, *warm, *opening, *at.model.warnings]
 

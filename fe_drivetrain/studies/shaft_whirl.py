@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -17,6 +18,7 @@ from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.comparison import grid_convergence
 from fe_drivetrain.drivetrain_file import Drivetrain
 from fe_drivetrain.dynamics import Level, System, machine_of, machine_system
+from fe_drivetrain.dynamics.whirl.condensed import condensed_rotor
 from fe_drivetrain.dynamics.whirl.modes import (
     Critical,
     chart_criticals,
@@ -25,7 +27,7 @@ from fe_drivetrain.dynamics.whirl.modes import (
     stability_limit,
     whirl_chart,
 )
-from fe_drivetrain.dynamics.whirl.rotor import THEORIES, Rotor, Theory, rigid_rotor
+from fe_drivetrain.dynamics.whirl.rotor import THEORIES, Rotor, rigid_rotor
 from fe_drivetrain.dynamics.whirl.unbalance import UnbalanceResponse, unbalance_response
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
@@ -50,6 +52,8 @@ SHOWN = 8
 """Modes of a Campbell diagram."""
 FURTHER = 1.5
 """Highest speed at which a shaft's critical is looked for in the whole drivetrain, over that."""
+CONDENSED = {"condensed to bearings": 0, "condensed, and 4 modes": 4}
+"""Condensed levels of the ladder, and the modes that each keeps."""
 ROUND_OFF = 1e-9
 """Relative, of what no number of elements changes."""
 
@@ -238,18 +242,30 @@ def _without_meshes(shaft: ShaftRotor, limit: float) -> float | None:
 
 def _ladder(shaft: ShaftRotor, limit: float) -> list[Rung]:
     """First critical at each level of the model, from the simplest, with processor times."""
-    levels: list[tuple[str, int, Theory]] = [("rigid shaft", 0, "timoshenko")]
+    levels: list[tuple[str, Callable[[], Rotor]]] = [
+        ("rigid shaft", lambda: rigid_rotor(shaft.rotor()))
+    ]
     if len(shaft.pieces):
         levels += [
-            (f"{theory}, as few elements as it has pieces", 1, theory) for theory in THEORIES
+            (f"{theory}, as few elements as it has pieces", partial(shaft.rotor, 1, theory))
+            for theory in THEORIES
         ]
-        levels += [(f"timoshenko, {p} times as many", p, "timoshenko") for p in (2, 4)]
+        levels.append(("timoshenko, 2 times as many", partial(shaft.rotor, 2)))
+        levels += [
+            (f"timoshenko, 4 times as many, {words}", partial(_condensed, shaft, modes))
+            for words, modes in CONDENSED.items()
+        ]
+        levels.append(("timoshenko, 4 times as many", partial(shaft.rotor, 4)))
     found = []
-    for name, parts, theory in levels:
+    for name, made in levels:
         begin = time.process_time()
-        rotor = shaft.rotor(parts, theory) if parts else rigid_rotor(shaft.rotor())
+        rotor = made()
         first = excited_critical(critical_speeds(rotor, 10.0 * limit))
         seconds = time.process_time() - begin
         speed = None if first is None else first.speed
-        found.append(Rung(name, 4 * len(rotor.stations), speed, seconds))
+        found.append(Rung(name, 2 * len(rotor.mass), speed, seconds))
     return found
+
+
+def _condensed(shaft: ShaftRotor, modes: int) -> Rotor:
+    return condensed_rotor(shaft.rotor(4), modes)

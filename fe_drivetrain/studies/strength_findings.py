@@ -158,7 +158,12 @@ def stress_row(one: SectionAnswer) -> Record:
     row["R_m [MPa]"], row["R_e [MPa]"] = rated.strength.tensile / 1e6, rated.strength.yielding / 1e6
     for k, load in enumerate(("tension", "bending", "torsion")):
         row[f"endured reversed in {load} [MPa]"] = float(rated.strength.reversed[k]) / 1e6
-    row["remark"] = rated.remark
+    bored = ""
+    if rated.of_solid:
+        bored = (
+            f"formula of a solid shaft; bore {rated.section.bore / rated.section.diameter:.2g} d"
+        )
+    row["remark"] = "; ".join(filter(None, (rated.remark, bored)))
     return row
 
 
@@ -270,13 +275,42 @@ def _cautions(
             "they are taken as there: state strength at the shaft's own diameter "
             "(reference_diameter)."
         )
+    bored = [one for one in shaft.rated if one.of_solid]
+    if bored:
+        most = max(one.section.bore / one.section.diameter for one in bored)
+        names = ", ".join(one.section.name for one in bored)
+        found.note(
+            f"K_t of {names} is by formulas of solid shafts, and the shaft is bored, up to "
+            f"{formatted(most, 2)} of its diameter: nominal stress has the bore, K_t may err to "
+            "either side, the more the thinner the wall."
+        )
     found.note(
         "Nominal stress has no shear of shear force, and a section in the middle of a bearing is "
         "in front of its force."
     )
     if varies:
         found.note("Starts and stops between histories are not counted as cycles.")
-    found.say(f"Housings of the bearings: {shaft.housings}.", UNREAD)
+    found.say(_stress_level(shaft), f"Housings of the bearings: {shaft.housings}.", UNREAD)
+
+
+def _stress_level(shaft: StrengthShaft) -> str:
+    """By which level stress at notches was found, and why that is enough."""
+    solved = [one for one in shaft.rated if one.by_elasticity]
+    notched = [one for one in shaft.rated if not one.by_elasticity and one.effect.alpha.max() > 1]
+    said = []
+    if solved:
+        band = 100.0 * max(one.relative_band for one in solved)
+        said.append(
+            f"{len(solved)} by elasticity of the meridian in harmonics, each with the band of two "
+            f"meshes, up to {formatted(band, 1)}\u00a0%, which is enough: the step is of "
+            "revolution, and force, bending and torque are harmonics 0 and 1 alone, so that solids "
+            "add nothing but their coarser mesh"
+        )
+    if notched:
+        said.append(f"{len(notched)} by formulas of DIN 743-2, without a band")
+    return (
+        f"Stress at notches: {'; '.join(said)}." if said else "Stress at notches: there are none."
+    )
 
 
 def _answer(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite.records import Record
@@ -15,6 +17,7 @@ CAPTION = (
     "of its seats. Each part has one temperature; the ground, and the gearbox's springs, have none"
 )
 
+_RIGID = "1 beam, rigid housings that rise"
 _LEAST = 1.0  # kN: what is less is not spoken of
 
 
@@ -35,7 +38,7 @@ def thermal_tables(scene: Scene, model: Model | None = None) -> dict[str, list[R
     """
     if not scene.temperatures:
         return {}
-    found = {"1 beam, rigid housings that rise": thermal_level(scene)}
+    found = {_RIGID: thermal_level(scene)}
     if model is not None:
         springs, _ = housing_springs(scene)
         found["1 beam, housings as springs"] = thermal_level(scene, 1, springs)
@@ -43,24 +46,27 @@ def thermal_tables(scene: Scene, model: Model | None = None) -> dict[str, list[R
     return {CAPTION: [row for level, state in found.items() for row in _rows(scene, level, state)]}
 
 
-def thermal_caution(scene: Scene) -> str | None:
+def thermal_caution(tables: Mapping[str, Sequence[Record]]) -> str | None:
     """The largest force of temperatures along the axis, as a sentence; None without any.
 
     Parameters
     ----------
-    scene : Scene
-        The scene.
+    tables : mapping
+        Those of `thermal_tables`, among others.
     """
-    if not scene.temperatures:
+    forces = {
+        str(row["at"]): abs(float(row["Fx [kN]"]))
+        for row in tables.get(CAPTION, ())
+        if row["level"] == _RIGID and row["at"] != "gearbox"
+    }
+    if not forces:
         return None
-    reactions = thermal_level(scene).reactions
-    name = max(scene.bearing_names, key=lambda one: abs(float(reactions[one][0])))
-    force = 1e-3 * abs(float(reactions[name][0]))
-    if force < _LEAST:
+    name = max(forces, key=lambda one: forces[one])
+    if forces[name] < _LEAST:
         return None
     return (
-        f"Temperatures alone push {name} with {formatted(force, 3)} kN along the axis, by a beam "
-        "on rigid housings: let one bearing float, or state how each one is held."
+        f"Temperatures alone push {name} with {formatted(forces[name], 3)} kN along the axis, by "
+        "a beam on rigid housings: let one bearing float, or state how each one is held."
     )
 
 

@@ -237,7 +237,10 @@ def _cautions(
     if any(of_planet(name) and run.extremes[name].kind == "bearing" for name in run.extremes):
         planets = "travel with their carrier" if run.planets_travel else "stand at one azimuth"
         said.append(f"Planets {planets}: forces of bearings are of that.")
-    said.append("Damping is by ratios; swings decay as these say.")
+    said.append(
+        "Damping is by ratios, and swings decay as these say; friction of bearings and teeth takes "
+        "no torque, so that those behind the rotor are too large by it."
+    )
     return said[:3]
 
 

@@ -57,10 +57,12 @@ def state_whirl(
     found.data("levels", [row for shaft in shafts for row in level_rows(shaft)])
     _assume(found, machine, whirl)
     figures = _figures(found, shafts)
-    cautions = [
-        "Each shaft is taken by itself: bodies of its neighbours stand still, and their gears hold "
-        "it by the stiffness of the meshes."
-    ]
+    cautions = []
+    if machine.stages:
+        cautions.append(
+            "Each shaft is taken by itself: bodies of its neighbours stand still, and their gears "
+            "hold it by the stiffness of the meshes."
+        )
     if endless := [shaft.name for shaft in shafts if _without_bound(shaft)]:
         cautions.insert(
             0,
@@ -223,10 +225,11 @@ def _assume(found: Findings, machine: Machine, whirl: WhirlData | None) -> None:
     found.assume_all(machine.assumptions())
     for row in (whirl or WhirlData()).assumptions():
         found.assume(f"whirl: {row.name}", row.value, row.unit, row.source)
-    found.note(
+    meshes = (
         "Gear meshes act across the shaft without its turning; planets follow without mass of "
-        "their own, which the carrier has. The rotor's blades are rigid."
+        "their own, which the carrier has. "
     )
+    found.note(f"{meshes if machine.stages else ''}The rotor's blades are rigid.")
 
 
 def _figures(found: Findings, shafts: Sequence[ShaftWhirl]) -> list[KeyFigure]:

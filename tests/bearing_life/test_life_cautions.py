@@ -12,7 +12,12 @@ from tiny_case import Result
 
 from fe_drivetrain.bearing.catalogue import catalogue_entry
 from fe_drivetrain.bearing_life.life.life_rules import LifeRules
-from fe_drivetrain.bearing_life.life.lubricants import GRADES, Lubricant
+from fe_drivetrain.bearing_life.life.lubricants import (
+    GRADES,
+    Lubricant,
+    grade_viscosities,
+    viscosity_by_index,
+)
 from fe_drivetrain.bearing_life.life.modified_life import viscosity
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
@@ -230,3 +235,31 @@ def test_a_cold_bearing_says_that_its_viscosity_is_extrapolated(run) -> None:
     said = " ".join(found.notes)
     assert "The viscosity at 0 degC, 1.51e+04 mm2/s, is extrapolated" in said
     assert "the film is above kappa = 4" in said
+
+
+@pytest.mark.parametrize("name", ["VG 460", "VG 320", "VG 220"])
+def test_grades_have_a_viscosity_index_of_95(name: str) -> None:
+    """ASTM D2270 from their usual values, against what the program states of them."""
+    at_40, at_100 = GRADES[name]
+    low, high = (viscosity_by_index(at_100, index) for index in (0.0, 100.0))
+    assert (low - at_40) / (low - high) == pytest.approx(0.95, abs=0.007)
+
+
+def test_fits_of_the_viscosity_index_meet() -> None:
+    for end in (6.4, 7.0, 7.7, 9.0, 12.0, 15.0, 18.0, 22.0, 28.0, 40.0, 55.0):
+        below, above = viscosity_by_index(end), viscosity_by_index(end * (1.0 + 1e-9))
+        assert above == pytest.approx(below, rel=2e-3)
+    # and with the one formula that the standard has beyond them
+    assert viscosity_by_index(70.0, 0.0) == pytest.approx(
+        0.8353 * 70.0**2 + 14.67 * 70.0 - 216.0, rel=2e-3
+    )
+
+
+def test_a_grade_of_iso_3448_has_its_viscosities() -> None:
+    assert grade_viscosities("VG 320") == GRADES["VG 320"]
+    at_40, at_100 = grade_viscosities("VG 680")
+    assert at_40 == 680.0
+    assert viscosity_by_index(at_100) == pytest.approx(680.0, rel=1e-9)
+    for name in ("VG 5", "VG x", "VG nan", "SAE 90"):
+        with pytest.raises(InputError, match="is no grade"):
+            grade_viscosities(name)

@@ -56,6 +56,7 @@ WITHOUT_BODY = {
     # masses on springs
     *(f"stability/{name}" for name in ("loose_bearings", "near_singular_carriers")),
     "stability/whirl_senses",
+    "stability/flat_designs",
     *(f"stability/{name}" for name in ("parametric_resonance", "stiff_limits", "time_step")),
     "stability/tooth_separation",
 }

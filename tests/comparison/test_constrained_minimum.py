@@ -7,6 +7,8 @@ from fe_drivetrain.comparison.constrained_minimum import (
     constrained_minimum,
     distinct_minima,
     least_violation,
+    multiplier_ranges,
+    nearest_start,
     slopes,
     starting_points,
 )
@@ -98,3 +100,42 @@ def test_multipliers_of_ends_have_their_sign():
     )
     assert found.at == pytest.approx([0.0, 1.0], abs=1e-9)
     assert found.at_ends == pytest.approx([-1.0, 2.0], rel=1e-6)
+
+
+def test_points_that_do_not_exist_are_rejected():
+    """x + y is least where x y = 0.2 touches; beyond y = 0.6, and for x + y < 0.85, nothing is."""
+
+    def functions(at):
+        x, y = at
+        if y > 0.6 or x + y < 0.85:
+            return np.full(2, np.inf)
+        return np.array([x + y, 0.2 - x * y])
+
+    known = np.array([0.9, 0.5])
+    begin = nearest_start(functions, np.array([0.1, 0.9]), known)
+    assert np.isfinite(functions(begin)).all()
+    found = constrained_minimum(functions, begin)
+    assert found.at == pytest.approx(np.sqrt([0.2, 0.2]), abs=1e-6)
+    beside = slopes(functions, np.array([0.7, 0.6]))  # one side of y does not exist
+    assert beside == pytest.approx(np.array([[1.0, 1.0], [-0.6, -0.7]]), rel=1e-7)
+    nowhere = constrained_minimum(lambda _: np.full(2, np.inf), known)
+    assert nowhere.violation == np.inf
+
+
+def test_prices_of_limits_alike_are_open():
+    """The second limit is twice the first: either may have all of the price, 1 or 1/2."""
+
+    def functions(at):
+        return np.array([at[0] + at[1], 0.5 - at[0] - at[1], 1.0 - 2.0 * (at[0] + at[1])])
+
+    found = constrained_minimum(functions, np.array([0.5, 0.5]))
+    ranges = multiplier_ranges(slopes(functions, found.at), found, [0, 1], 2)
+    assert ranges == pytest.approx(np.array([[0.0, 1.0], [0.0, 0.5]]), abs=1e-3)
+    together = multiplier_ranges(slopes(functions, found.at), found, [0, 0], 1)
+    assert together == pytest.approx(np.array([[0.5, 1.0]]), abs=1e-3)
+
+
+def test_the_price_of_one_limit_is_no_range():
+    found = constrained_minimum(_tube, np.array([0.5, 0.2]))
+    ranges = multiplier_ranges(slopes(_tube, found.at), found, [0, 1], 2)
+    assert ranges == pytest.approx(np.array([found.multipliers, found.multipliers]).T, rel=1e-3)

@@ -7,6 +7,7 @@ from scipy.integrate import solve_ivp
 from fe_drivetrain.cases.references.published_rotors import NELSON_MCVAUGH, criticals_rpm
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.materials import Material
+from fe_drivetrain.dynamics.whirl.condensed import condensed_rotor
 from fe_drivetrain.dynamics.whirl.modes import (
     Critical,
     chart_criticals,
@@ -406,3 +407,28 @@ def test_exudyn_precesses_with_these_frequencies() -> None:
     shifted = np.exp(1j * np.outer(t, 1.01 * turning))
     worse = whirl - shifted @ np.linalg.lstsq(shifted, whirl, rcond=None)[0]
     assert np.abs(worse).max() > 10 * np.abs(left).max()
+
+
+def test_a_condensed_rotor_is_stiffer_and_with_all_modes_the_rotor() -> None:
+    whole = NELSON_MCVAUGH.rotor("timoshenko", 2)
+    exact = criticals_rpm(whole, 1)
+    before = np.full(len(exact), np.inf)
+    for modes in (0, 2, 4, 8, 16):
+        rotor = condensed_rotor(whole, modes)
+        assert len(rotor.mass) == 2 * 2 + modes
+        found = criticals_rpm(rotor, 1)[: len(exact)]
+        # of whirl with the speed, by Rayleigh and Ritz, from above
+        assert (found >= exact[: len(found)] * (1.0 - 1e-9)).all()
+        assert (found <= before[: len(found)] * (1.0 + 1e-9)).all()
+        before[: len(found)] = found
+    assert before == pytest.approx(exact, rel=1e-3)
+    everything = condensed_rotor(whole, 1000)
+    assert len(everything.mass) == len(whole.mass)
+    assert criticals_rpm(everything, 1) == pytest.approx(exact, rel=1e-8)
+
+
+def test_condensing_keeps_what_moves_as_a_rigid_body() -> None:
+    whole = NELSON_MCVAUGH.rotor("timoshenko")
+    one, other = rigid_rotor(whole), rigid_rotor(condensed_rotor(whole))
+    # the second begins at its first bearing: mass alone is the same
+    assert other.mass[0, 0] == pytest.approx(one.mass[0, 0], rel=1e-9)

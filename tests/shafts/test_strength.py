@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fe_drivetrain.cases.references.plane_rings import Lame, Plane, interference_pressure
 from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.materials import MATERIALS
 from fe_drivetrain.drivetrain_file.reading import change_scene, library_scene
 from fe_drivetrain.shafts.strength.din743 import (
     NotchEffect,
@@ -41,8 +44,9 @@ from fe_drivetrain.shafts.strength.notches import (
     turned_factors,
     turned_gradients,
 )
+from fe_drivetrain.shafts.strength.rated import rated_section
 from fe_drivetrain.shafts.strength.section_loads import section_loads
-from fe_drivetrain.shafts.strength.sections import shaft_sections
+from fe_drivetrain.shafts.strength.sections import ShaftSection, shaft_sections
 
 STEEL = SteelData("quenched and tempered", 1000e6, 800e6, (400e6, 500e6, 300e6), None, 5e-6)
 PLAIN = NotchEffect(np.ones(3), np.ones(3), turned=False)
@@ -354,3 +358,24 @@ def test_what_cannot_be_is_refused_in_a_sentence(change: dict[str, object], mess
     good = {"steel": "structural", "tensile_strength": 6e8, "yield_strength": 4e8}
     with pytest.raises(InputError, match=message):
         change_scene(library_scene(SCENE), {"strength": {**good, **change}})
+
+
+def test_a_hole_through_a_tube_takes_a_strip_of_its_wall() -> None:
+    """Second moment of the strip by quadrature, over the outer radius."""
+    d, b, r = 0.4, 0.25, 0.01
+    y = np.linspace(b / 2, d / 2, 20001)
+    strip = 2.0 * np.trapezoid(2.0 * r * y**2, y) / (d / 2)
+    lost = moduli(d, b) - moduli(d, b, r)
+    assert lost == pytest.approx(np.array([2.0 * r * (d - b), strip, strip]), rel=1e-6)
+
+
+def test_formulas_of_solid_shafts_are_named_where_the_shaft_is_bored() -> None:
+    groove = ShaftSection("groove", 1.0, "groove", 0.4, 0.2, 0.44, 0.02, 0.01)
+    shoulder = ShaftSection("step", 1.0, "shoulder", 0.4, 0.2, 0.5, 0.05, 0.02)
+    solid = replace(groove, bore=0.0)
+    plain = replace(groove, kind="plain", depth=0.0, radius=0.0)
+    steels = next(iter(MATERIALS.values()))
+    assert rated_section(groove, STEEL, steels).of_solid
+    assert rated_section(shoulder, STEEL, steels, elastic=False).of_solid
+    assert not rated_section(solid, STEEL, steels).of_solid
+    assert not rated_section(plain, STEEL, steels).of_solid

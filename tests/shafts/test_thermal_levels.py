@@ -5,11 +5,13 @@ import pytest
 
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file import Scene, library_scene
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.shafts.fidelity.ladder import housing_springs
 from fe_drivetrain.shafts.fidelity.thermal_levels import thermal_level
 from fe_drivetrain.shafts.response.model import build_model, mesh_scene
 from fe_drivetrain.shafts.response.thermal import thermal_state
 from fe_drivetrain.studies.scene_description import quick_scene
+from fe_drivetrain.studies.thermal_tables import thermal_caution, thermal_tables
 
 WARM = {"shaft": 60.0, "front": 60.0, "rear": 60.0, "front.housing": 50.0, "rear.housing": 45.0}
 
@@ -88,3 +90,14 @@ def test_temperatures_that_cannot_be_are_refused(
 ) -> None:
     with pytest.raises((InputError, ValueError), match=message):
         warm("two_bearings", temperatures)
+
+
+def test_the_caution_names_the_bearing_that_is_pushed_most() -> None:
+    scene = warm("two_bearings", {"shaft": 60.0})
+    said = thermal_caution(thermal_tables(scene))
+    reactions = thermal_level(scene).reactions
+    name = max(scene.bearing_names, key=lambda one: abs(reactions[one][0]))
+    assert said is not None
+    assert f"push {name} with {formatted(abs(reactions[name][0]) / 1e3, 3)} kN" in said
+    assert thermal_caution({}) is None
+    assert thermal_caution(thermal_tables(warm("two_bearings", {"shaft": 20.0}))) is None

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from coarse_scenes import LENGTHS, coarse_scene
 
-from fe_drivetrain.cases.fidelity.least_shafts import bending_stiffness, least_bored_shaft
+from fe_drivetrain.cases.references.least_shafts import bending_stiffness, least_bored_shaft
 from fe_drivetrain.command_line.app import main
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.comparison.constrained_minimum import slopes, starting_points
+from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.drivetrain_file.reading import scene_text
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.fidelity.loaded_shaft import (
@@ -23,7 +24,7 @@ from fe_drivetrain.shafts.fidelity.loaded_shaft import (
 )
 from fe_drivetrain.shafts.fidelity.quantity import named_load
 from fe_drivetrain.shafts.uncertainty.resolver import Resolver
-from fe_drivetrain.studies import design_request, search
+from fe_drivetrain.studies import design_request, design_search, search
 from fe_drivetrain.studies.design_minima import MARGIN, Problem, minima_of
 from fe_drivetrain.studies.design_quantities import DesignQuantities
 from fe_drivetrain.studies.design_request import parse_limit
@@ -158,6 +159,49 @@ def test_what_changes_nothing_is_said() -> None:
     limit = f"shaft.bending>={0.8 * _stiffness():g} N m/rad"
     found = search(_stepped(), design_request(vary, "mass", [limit]), tolerance=0.9, starts=1)
     assert any("gearbox.weight changes nothing" in note for note in found.notes)
+
+
+def test_what_cannot_be_built_is_rejected_and_what_has_not_settled_is_said(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(design_search, "_ROUNDS", 1)
+    vary = {"shaft.sections.0.inner_diameter": (0.02, 1.2)}  # from 0.5 on nothing holds together
+    limits = ["deflection<=0.135 mm", "stress<=30 MPa"]
+    found = search(
+        _stepped(), design_request(vary, "mass", limits, load=LOAD), 0.9, 2, front="stress"
+    )
+    assert found.values["shaft.sections.0.inner_diameter"] < 0.5
+    assert found.passed
+    assert found.answer is not None
+    assert "has not settled: the last of 1 rounds" in found.answer.cautions[0]
+    assert {one.limit.name for one in found.front} == {"stress"}
+    values = [one.value for one in found.front]
+    assert (np.diff(values) <= 1e-6 * values[0]).all()
+    # relaxed, the limit of deflection ends where the bore meets the next section
+    other = search(_stepped(), design_request(vary, "mass", limits, load=LOAD), 0.9, 2)
+    assert {one.limit.name for one in other.front} == {"deflection"}
+    assert other.front[-1].values["shaft.sections.0.inner_diameter"] == pytest.approx(0.5, abs=1e-4)
+    assert any("could not be built and were rejected" in note for note in other.notes)
+
+
+def test_a_limit_of_frequency_is_met() -> None:
+    scene = read_drivetrain("iea_15mw_main_shaft", {})
+    key = "shaft.sections.0.inner_diameter"
+    request = design_request({key: (2.7, 2.9)}, "mass", ["frequency>=22 Hz", "frequency<=60 Hz"])
+    asked = DesignQuantities(scene, request)
+    now = asked.values(scene)
+    trials = DesignTrials(asked, {name: len(values) for name, values in now.items()}, {})
+    problem = Problem(trials, "mass", request.limits, float(now["mass"][0]))
+    (one,) = minima_of(problem, [np.array([0.5])], print, [])
+    at = trials.design(one.at)
+    assert asked.values(at)["frequency"] == pytest.approx(22.0 * (1.0 + MARGIN), rel=1e-6)
+    upper, lower = problem.prices(one)[::-1]
+    assert upper == 0.0
+    change = asked.values(trials.design(one.at + 0.01))
+    slope = np.log(change["mass"] / asked.values(at)["mass"]) / np.log(
+        change["frequency"] / asked.values(at)["frequency"]
+    )
+    assert lower == pytest.approx(float(slope[0]), rel=0.05)
 
 
 def test_lists_are_tried_one_by_one() -> None:

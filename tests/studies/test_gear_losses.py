@@ -22,6 +22,7 @@ from fe_drivetrain.studies.gear_losses import (
 )
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_ratings import gears, prepared
+from fe_drivetrain.studies.loss_findings import life_efficiency
 
 OPTIONS = GearOptions(losses=True)
 TORQUES = (
@@ -151,7 +152,7 @@ def test_a_seal_of_the_file_rubs() -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"operation.lubricant": "VG 150"}, "viscosity of VG 150 at 100 degC is not known"),
+        ({"operation.lubricant": "VG 5000"}, "lubricant 'VG 5000' is no grade that is known"),
         (
             {"gearbox.seals": [{"name": "lip", "shaft": "axle", "diameter": 0.15}]},
             "rubs on shaft 'axle', which is none",
@@ -212,3 +213,21 @@ gearbox:
 generator: {inertia: 30}
 operation: {rated_power: 7.5e5, rotor_speed: [1.0, 2.3]}
 """
+
+
+def test_efficiency_over_the_life_is_that_of_the_energy(losses: DrivetrainLosses) -> None:
+    share, band = life_efficiency(losses) or (0.0, 0.0)
+    of = losses.answer.losses
+    hours = np.array([10.0, 10.0])  # of the two classes that are driven
+    given, left = of.entering[1:3] @ hours, of.leaving[1:3] @ hours
+    assert share == pytest.approx(left / given, rel=1e-12)
+    assert of.efficiency[2] < share < of.efficiency[1]
+    shares = losses.efficiency_band[1:3]
+    assert shares.min() < band < shares.max()
+
+
+def test_a_grade_without_a_data_sheet_has_an_index_of_95() -> None:
+    of = found(changes={"operation.lubricant": "VG 150"})
+    assert "viscosity index" in of.assumed
+    assert of.oil.viscosity_40 == 150.0
+    assert of.oil.viscosity_100 == pytest.approx(14.7, rel=0.02)

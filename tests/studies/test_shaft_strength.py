@@ -115,6 +115,11 @@ def test_elasticity_has_a_band_and_formulas_none(scene: Scene, still: StrengthRe
         assert formula.local.band == 0.0
         assert one.fatigue.value == pytest.approx(formula.fatigue.value, rel=0.25)
         assert np.isnan(one.local_safety) != one.rated.by_elasticity
+    shoulders = sum(one.rated.by_elasticity for one in solved.sections.values())
+    assert any(f"Stress at notches: {shoulders} by elasticity" in text for text in solved.details)
+    assert any(
+        f"Stress at notches: {shoulders} by formulas of DIN 743-2" in text for text in still.details
+    )
 
 
 def test_bounds_of_housings_are_within_the_band(scene: Scene) -> None:

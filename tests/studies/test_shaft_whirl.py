@@ -46,6 +46,28 @@ def test_each_shaft_that_has_a_mass_whirls(found: WhirlResult) -> None:
         assert shaft.margin > 0.9
 
 
+def test_condensed_levels_come_from_above(found: WhirlResult) -> None:
+    for shaft in found.shafts:
+        by_name = {one.name: one.speed for one in shaft.ladder}
+        finest = shaft.ladder[-1].speed
+        if finest is None or len(by_name) < 3:
+            continue
+        static = by_name["timoshenko, 4 times as many, condensed to bearings"]
+        modal = by_name["timoshenko, 4 times as many, condensed, and 4 modes"]
+        assert static is not None
+        assert modal is not None
+        assert static >= modal * (1 - 1e-9) >= finest * (1 - 1e-8)
+        assert modal == pytest.approx(finest, rel=1e-3)
+
+
+def test_a_direct_drive_has_no_words_on_meshes() -> None:
+    found = whirl(read_drivetrain("iea_15mw_main_shaft"))
+    assert found.answer is not None
+    said = " ".join([*found.answer.cautions, *found.notes])
+    assert "mesh" not in said
+    assert "planets" not in said
+
+
 def test_the_main_shaft_is_between_its_bounds_and_as_in_the_whole(found: WhirlResult) -> None:
     main_shaft = found.shafts[0]
     assert main_shaft.first is not None

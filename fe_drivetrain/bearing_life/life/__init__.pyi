@@ -15,6 +15,7 @@ from .lubricants import OIL_BATH as OIL_BATH
 from .lubricants import SUPPLIES as SUPPLIES
 from .lubricants import Lubricant as Lubricant
 from .lubricants import contamination_factor as contamination_factor
+from .lubricants import grade_viscosities as grade_viscosities
 from .modified_life import equivalent_loads as equivalent_loads
 from .modified_life import life_factor as life_factor
 from .modified_life import modified_lamina_life as modified_lamina_life

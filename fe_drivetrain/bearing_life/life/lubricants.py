@@ -66,6 +66,25 @@ GRADES = {
 read, where those at 100 degC, and both of the other oils, are usual values of a viscosity index of
 95, not of a data sheet."""
 
+VISCOSITY_INDEX = 95.0
+"""Viscosity index of a mineral oil whose viscosity at 100 degC nobody states."""
+
+# to which viscosity at 100 degC [mm2/s], then a, b, c of L and of H = a Y^2 + b Y + c
+_INDEX = (
+    (6.4, (0.10100, 16.6350, -45.469), (0.04985, 9.1613, -18.557)),
+    (7.0, (3.35714, -23.5643, 78.466), (0.22619, 7.7369, -16.656)),
+    (7.7, (0.01191, 21.4750, -72.870), (0.79762, -0.7321, 14.610)),
+    (9.0, (0.41858, 16.1558, -56.040), (0.05794, 10.5156, -28.240)),
+    (12.0, (0.88779, 7.5527, -16.600), (0.26665, 6.7015, -10.810)),
+    (15.0, (0.76720, 10.7972, -38.180), (0.20073, 8.4658, -22.490)),
+    (18.0, (0.97305, 5.3135, -2.200), (0.28889, 5.9741, -4.930)),
+    (22.0, (0.97256, 5.2500, -0.980), (0.24504, 7.4160, -16.730)),
+    (28.0, (0.91413, 7.4759, -21.820), (0.20323, 9.1267, -34.230)),
+    (40.0, (0.87031, 9.7157, -50.770), (0.18411, 10.1015, -46.750)),
+    (55.0, (0.84703, 12.6752, -133.310), (0.17029, 11.4866, -80.620)),
+    (70.0, (0.85921, 11.1009, -83.190), (0.17130, 11.3680, -76.940)),
+)
+_THINNEST_GRADE, _THICKEST_GRADE = 32.0, 1500.0  # ISO 3448 grades of that index in the table
 
 THICKEST = 150e3
 """Viscosity [mm2/s] beyond which an oil is no longer drawn into a contact: the 150,000 mPa s at
@@ -168,6 +187,55 @@ class Lubricant:
     def contamination(self, kappa: ArrayLike, pitch_diameter: float) -> Floats:
         """e_C of ISO 281, annex A; see `contamination_factor`."""
         return contamination_factor(kappa, pitch_diameter, self.supply, self.cleanliness)
+
+
+def viscosity_by_index(at_100: float, index: float = VISCOSITY_INDEX) -> float:
+    """Viscosity at 40 degC of an oil of a viscosity index up to 100 [mm2/s] (ASTM D2270).
+
+    Its fits of L and H are from memory, not verified: they meet where their ranges do to 0.2 %, and
+    have the usual values of `GRADES`.
+
+    Parameters
+    ----------
+    at_100 : float
+        Viscosity at 100 degC, from 5 to 70 [mm2/s].
+    index : float
+        Viscosity index.
+    """
+    low, high = next(pair for end, *pair in _INDEX if at_100 <= end)
+    L, H = (a * at_100**2 + b * at_100 + c for a, b, c in (low, high))
+    return L - index / 100.0 * (L - H)
+
+
+def grade_viscosities(name: str) -> tuple[float, float]:
+    """Viscosities of a grade at 40 and at 100 degC [mm2/s].
+
+    Parameters
+    ----------
+    name : str
+        A key of `GRADES`, or "VG 150": a number of ISO 3448, with a viscosity index of 95.
+
+    Raises
+    ------
+    InputError
+        There is no such grade.
+    """
+    from scipy.optimize import brentq
+
+    if name in GRADES:
+        return GRADES[name]
+    try:
+        at_40 = float(name.removeprefix("VG ")) if name.startswith("VG ") else np.nan
+    except ValueError:
+        at_40 = np.nan
+    if not _THINNEST_GRADE <= at_40 <= _THICKEST_GRADE:
+        raise InputError(
+            f"lubricant {name!r} is no grade that is known: use one of {', '.join(GRADES)}, a VG "
+            f"from {_THINNEST_GRADE:g} to {_THICKEST_GRADE:g}, or give the viscosity at 40 and at "
+            "100 degC in mm2/s"
+        )
+    at_100 = brentq(lambda y: viscosity_by_index(y) - at_40, 5.0, 70.0)
+    return at_40, float(at_100)
 
 
 def contamination_factor(

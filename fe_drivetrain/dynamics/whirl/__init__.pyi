@@ -1,3 +1,4 @@
+from .condensed import condensed_rotor as condensed_rotor
 from .modes import Critical as Critical
 from .modes import WhirlChart as WhirlChart
 from .modes import WhirlModes as WhirlModes

@@ -1,6 +1,7 @@
 """Stress concentration and fatigue notch factors of shafts by the formulas of DIN 743-2.
 
-For sources see `fe_drivetrain.shafts.strength.din743`. Formulas of elasticity are of solid shafts.
+For sources see `fe_drivetrain.shafts.strength.din743`. Stress concentration factors are those of
+solid shafts.
 """
 
 from __future__ import annotations
@@ -115,7 +116,9 @@ def moduli(diameter: float, bore: float = 0.0, hole: float = 0.0) -> Floats:
     """
     d, b, r = diameter, bore, hole
     ring = math.pi * (d**4 - b**4) / (32.0 * d)
-    lost = np.array([2.0 * r * (d - b), r * d**2 / 3.0, r * d**2 / 3.0])
+    # a strip of width 2 r in the wall, over the outer radius; without a bore r d^2 / 3
+    strip = r * (d**3 - b**3) / (3.0 * d)
+    lost = np.array([2.0 * r * (d - b), strip, strip])
     whole = np.array([math.pi * (d**2 - b**2) / 4.0, ring, 2.0 * ring])
     return np.asarray(whole - lost)
 

@@ -67,6 +67,11 @@ class RatedSection:
     __repr__ = short_repr
 
     @property
+    def of_solid(self) -> bool:
+        """Whether a bored section has the stress concentration factors of a solid shaft."""
+        return self.section.hollow and not self.by_elasticity and bool(self.effect.alpha.max() > 1)
+
+    @property
     def relative_band(self) -> float:
         """Largest share by which the mesh of a fillet may change what is endured."""
         return float((self.band / self.effect.alpha).max())
