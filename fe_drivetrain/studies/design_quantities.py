@@ -113,6 +113,9 @@ class DesignQuantities:
         self.units = {name: self._unit(name) for name in self.names}
         for limit in request.limits:
             limit.size(self.units[limit.name])
+        # what is shown of a limit has its unit, also where SI was meant without a word
+        limits = tuple(limit.in_unit(self.units[limit.name]) for limit in request.limits)
+        self.request = replace(request, limits=limits)
         if any(self._kind(name) in UNDER_LOAD for name in self.names) and not request.load:
             raise InputError(
                 f"{', '.join(n for n in self.names if self._kind(n) in UNDER_LOAD)} needs a load: "
