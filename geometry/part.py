@@ -144,7 +144,7 @@ def rows_of(what: str, of: type[Part] | Mapping[str, type[Part]]) -> Any:
             try:
                 found.append(one(item) if isinstance(item, Mapping) else item)
             except InputError as error:
-                raise InputError(f"{what} {number}: {_bare(error)}") from None
+                raise InputError(f"{what} {number}: {bare_sentence(error)}") from None
         return found
 
     return rows
@@ -155,7 +155,7 @@ def in_its_field(value: Any, handler: Any, info: Any) -> Any:
     try:
         return handler(value)
     except InputError as error:
-        raise InputError(f"{info.field_name}: {_bare(error)}") from None
+        raise InputError(f"{info.field_name}: {bare_sentence(error)}") from None
 
 
 class PartError(InputError):
@@ -174,7 +174,8 @@ class PartError(InputError):
         self.bare = bare or sentence
 
 
-def _bare(error: InputError) -> str:
+def bare_sentence(error: InputError) -> str:
+    """A sentence about a part without its kind, for where a field or a row says so."""
     return error.bare if isinstance(error, PartError) else str(error)
 
 

@@ -38,6 +38,7 @@ from fe_drivetrain.studies.mode_parts import described
 from fe_drivetrain.studies.mode_record import Modes
 from fe_drivetrain.studies.mode_speeds import in_operation
 from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.rotor_speeds import FARTHEST, check_speed, rated_speed
 
 SHOWN = 16
 """Number of modes that are described, and whose shapes are kept."""
@@ -128,6 +129,9 @@ def modes(
         message names them.
     """
     _check(generator, speeds, speed, blades, tolerance)
+    for name, asked in (("range of operation", speeds and speeds[1]), ("rotor", speed)):
+        if asked is not None:
+            check_speed(name, asked, rated_speed(drivetrain), FARTHEST, "change it")
     found, steps = Findings(), Steps(report)
     found.seed = None
     found.about(drivetrain)

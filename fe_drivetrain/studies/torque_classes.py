@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite, pi
+from math import isfinite
 from typing import NamedTuple
 
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.components import LARGEST_LOAD
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.studies.rotor_speeds import FASTEST, check_speed
 
 Rows = Sequence[Sequence[float]]
 """Torque [N m], hours and, where it differs, speed [rad/s] of each class of a spectrum."""
 
-FASTEST = 2.0
-"""Most that a rotor turns, over its rated speed: machines are stopped at 1.1 to 1.5 of it."""
-
-_RPM = 30.0 / pi
+_FIX = "correct it; a torque against the driving sense has a negative torque, not a negative speed"
 
 
 class TorqueClass(NamedTuple):
@@ -74,21 +72,6 @@ def torque_classes(rows: Rows, rated_speed: float | None) -> list[TorqueClass]:
                 "no speed of the rotor is known, by which a torque spectrum counts turns: give "
                 f"operation.rotor_speed, {argument('rotor_speed_rpm')}, or a speed of each class"
             )
-        _check_speed(name, speed, rated_speed)
+        check_speed(name, speed, rated_speed, FASTEST, _FIX)
         found.append(TorqueClass(torque, hours, speed))
     return found
-
-
-def _check_speed(name: str, speed: float, rated: float | None) -> None:
-    """Refuse a speed that is negative, or that no rotor of this rated speed reaches."""
-    most = None if rated is None else FASTEST * rated
-    if speed >= 0.0 and (most is None or speed <= most):
-        return
-    if most is None:
-        allowed = "at least 0"
-    else:
-        allowed = f"from 0 to {most * _RPM:.4g} 1/min, twice the rated speed"
-    raise InputError(
-        f"{name} has a speed of {speed * _RPM:.4g} 1/min but must have one {allowed}: correct it; "
-        "a torque against the driving sense has a negative torque, not a negative speed"
-    )

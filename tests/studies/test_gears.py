@@ -15,6 +15,9 @@ from fe_drivetrain.cases.references.rated_gears import rated_meshes
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.dynamics.bodies.levels import Level
+from fe_drivetrain.dynamics.bodies.machine import machine_of
+from fe_drivetrain.dynamics.bodies.mesh_loads import MeshResponses
 from fe_drivetrain.gear.load_factors import LoadFactors, face_factor, resonance_speed
 from fe_drivetrain.studies.gear_levels import Spread
 from fe_drivetrain.studies.gear_machine import gear_train
@@ -494,8 +497,23 @@ def test_classes_of_a_spectrum_are_within_reach_of_the_rotor(
 
 
 def test_without_a_rated_speed_a_spectrum_states_speeds_that_are_not_negative() -> None:
-    with pytest.raises(InputError, match=r"of -1\.91 1/min but must have one at least 0"):
+    with pytest.raises(
+        InputError, match=r"of -1\.91 1/min but must have one from 0 to 954.9 1/min"
+    ):
         torque_classes([(2e5, 1.0, -0.2)], None)
     with pytest.raises(InputError, match="no speed of the rotor is known"):
         torque_classes([(2e5, 1.0)], None)
     assert torque_classes([(-2e5, 1.0, 0.3)], None) == [(-2e5, 1.0, 0.3)]
+
+
+@pytest.mark.parametrize("key", ["gearbox.stages.2.stiffness", "gearbox.stages.0.ring_planet"])
+def test_the_stiffest_that_a_file_may_state_is_as_good_as_rigid(key: str) -> None:
+    """Beyond it statics would take other springs for none, and said that something moves freely."""
+    with pytest.raises(InputError, match="1e\\+20 but must be at most 1e\\+16"):
+        read_drivetrain("nrel_5mw", {key: 1e20})
+    sums = []
+    for stiffness in (1e13, 1e16):
+        machine = machine_of(read_drivetrain("nrel_5mw", {key: stiffness}))
+        loads = MeshResponses(machine, Level.FLEXIBLE, 1, 3).under(4e6)
+        sums.append([one.sum() for one in loads.slices.values()])
+    np.testing.assert_allclose(sums[1], sums[0], rtol=3e-8)
