@@ -13,6 +13,7 @@ from fe_drivetrain.bearing.operating_clearance import (
     OperatingClearance,
     Seats,
     operating_clearance,
+    warm_of,
 )
 from fe_drivetrain.bearing.press_fits import Ring, RingMaterial
 from fe_drivetrain.bearing.tolerances import Limits, class_clearance
@@ -143,6 +144,10 @@ def entry_clearance(
         initial = mounting.beginning
     found = operating_clearance(mounting, seats, initial, assumed)
     found = replace(found, normal=normal_of(entry))
+    if entry.kind == "single_row_tapered" or (entry.kind == "ball" and entry.contact_angle):
+        warm = warm_of(mounting.temperatures)
+        growth = shaft.expansion * warm.shaft - housing.expansion * warm.housing
+        found = replace(found, left_out=growth)
     _check_room(entry, mounting, found)
     return found
 
