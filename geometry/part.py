@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Self
 
@@ -143,7 +144,7 @@ def rows_of(what: str, of: type[Part] | Mapping[str, type[Part]]) -> Any:
             try:
                 found.append(one(item) if isinstance(item, Mapping) else item)
             except InputError as error:
-                raise InputError(f"{what} {number}: {error}") from None
+                raise InputError(f"{what} {number}: {bare_sentence(error)}") from None
         return found
 
     return rows
@@ -154,7 +155,34 @@ def in_its_field(value: Any, handler: Any, info: Any) -> Any:
     try:
         return handler(value)
     except InputError as error:
-        raise InputError(f"{info.field_name}: {error}") from None
+        raise InputError(f"{info.field_name}: {bare_sentence(error)}") from None
+
+
+class PartError(InputError):
+    """A fault of a part.
+
+    Parameters
+    ----------
+    sentence : str
+        With what kind of part it is of.
+    bare : str
+        Without, for where a field or a row says so.
+    """
+
+    def __init__(self, sentence: str, bare: str = "") -> None:
+        super().__init__(sentence)
+        self.bare = bare or sentence
+
+
+def bare_sentence(error: InputError) -> str:
+    """A sentence about a part without its kind, for where a field or a row says so."""
+    return error.bare if isinstance(error, PartError) else str(error)
+
+
+def _in_words(name: str) -> str:
+    """Name of a class of parts as words: "ForeignHousing" is a foreign housing."""
+    words = re.findall(r"[A-Z][a-z]*", name.removesuffix("Data").removesuffix("Row"))
+    return " ".join(words).lower()
 
 
 def _extra(field: FieldInfo, key: str) -> str:
@@ -179,7 +207,8 @@ class Part(BaseModel):
         try:
             return handler(data)
         except ValidationError as error:
-            raise InputError(f"{cls.__name__}: {fault_sentence(error, cls)}") from None
+            sentence = fault_sentence(error, cls)
+            raise PartError(f"{_in_words(cls.__name__)}: {sentence}", sentence) from None
 
     def assumptions(self) -> list[Assumption]:
         """List every dimension with its value, unit and source.

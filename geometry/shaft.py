@@ -12,7 +12,7 @@ from pydantic import Field, field_validator, model_validator
 
 from fe_drivetrain.common.errors import InputError
 
-from .part import LENGTH_TOLERANCE, Part, dimension
+from .part import LENGTH_TOLERANCE, Part, bare_sentence, dimension
 
 FINEST = 1e-5
 """Details of a meridian shorter than this (m) are refused: less than the tolerance of any turned
@@ -98,7 +98,7 @@ class Shaft(Part):
             try:
                 sections.append(Section.model_validate(item) if isinstance(item, Mapping) else item)
             except InputError as error:
-                raise InputError(f"shaft section {number}: {error}") from None
+                raise InputError(f"shaft section {number}: {bare_sentence(error)}") from None
         return sections
 
     @model_validator(mode="after")

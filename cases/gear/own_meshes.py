@@ -145,7 +145,7 @@ def _rated(train: GearTrain, mesh: GearMesh) -> RatedMesh:
     deviations = mesh.deviations
     if strength is None or deviations is None or speed is None or viscosity is None:
         raise InputError(f"{mesh.name} lacks {', '.join(mesh.missing)}: give what it lacks")
-    sharing, face = stresses.formula(train.torque)
+    sharing, face = stresses.formula(train.torque, speed, strength.application or 1.0)
     dynamic = (strength.dynamic or {}).get(mesh.key)
     turns = speed / (2.0 * pi) * 3600.0 * HOURS
     first, second = (

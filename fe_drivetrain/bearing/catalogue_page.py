@@ -19,7 +19,7 @@ from pydantic import (
 from fe_drivetrain.bearing.designations import Designation, Kind, Sizes, read_designation
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import fault_sentences
-from fe_drivetrain.common.strict_yaml import no_truth_value
+from fe_drivetrain.common.strict_yaml import digits_as_text, no_truth_value
 
 _SINGLE, _DOUBLE = 0.6, (0.675, 1.005)
 """e times Y of rollers in one row, and times Y1 and Y2 in two: 1.5 tan(alpha) times 0.4, 0.45 and
@@ -124,6 +124,11 @@ class CataloguePage(BaseModel):
     )
 
     _truth = field_validator("*", mode="before")(no_truth_value)
+
+    @field_validator("designation", mode="before")
+    @classmethod
+    def _as_text(cls, value: Any) -> Any:
+        return digits_as_text(value)
 
     @classmethod
     def read(cls, data: Any, name: str) -> Self:
@@ -272,7 +277,10 @@ def _wrong_sizes(page: CataloguePage) -> Iterator[str]:
                 "give kind and another designation"
             )
     if not 0.02 * bore < width < 1.5 * outside:
-        yield f"width is {width:g} m but must be 0.02 d to 1.5 D, {outside:g} m: correct it"
+        yield (
+            f"width is {width:g} m but must be {0.02 * bore:.4g} to {1.5 * outside:.4g} m, 0.02 d "
+            "to 1.5 D: correct it"
+        )
     limits = {"F": (bore, outside), "E": (bore, outside), "pitch_diameter": (bore, outside)}
     for key, (low, high) in limits.items():
         value = getattr(page, key)
@@ -294,13 +302,15 @@ def _wrong_ratings(page: CataloguePage) -> Iterator[str]:
         )
     elif not _STATIC[0] < page.C0 / page.C < _STATIC[1]:
         yield (
-            f"C0 is {page.C0:g} N but must be {_STATIC[0]:g} to {_STATIC[1]:g} times C, "
+            f"C0 is {page.C0:g} N but must be {_STATIC[0] * page.C:.4g} to "
+            f"{_STATIC[1] * page.C:.4g} N, {_STATIC[0]:g} to {_STATIC[1]:g} times C of "
             f"{page.C:g} N: correct one of them"
         )
     if page.Cu is not None and not _FATIGUE[0] < page.C0 / page.Cu < _FATIGUE[1]:
+        low, high = (page.C0 / part for part in reversed(_FATIGUE))
         yield (
-            f"Cu is {page.Cu:g} N but must be C0 over {_FATIGUE[0]:g} to {_FATIGUE[1]:g}, "
-            f"{page.C0:g} N: correct one of them"
+            f"Cu is {page.Cu:g} N but must be {low:.4g} to {high:.4g} N, C0 of {page.C0:g} N over "
+            f"{_FATIGUE[1]:g} to {_FATIGUE[0]:g}: correct one of them"
         )
 
 
@@ -349,7 +359,9 @@ def _wrong_kind(page: CataloguePage) -> Iterator[str]:
 
 
 def _stated(value: Any) -> Any:
-    return CataloguePage.read(dict(value), "catalogue") if isinstance(value, Mapping) else value
+    if isinstance(value, Mapping):
+        return CataloguePage.read(dict(value), "catalogue")
+    return digits_as_text(value)
 
 
 #: The name of an entry of a bearing catalogue, or what a catalogue's page prints.

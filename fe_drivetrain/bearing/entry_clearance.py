@@ -6,12 +6,14 @@ from dataclasses import replace
 from math import cos, inf, radians, sin, tan
 from typing import TYPE_CHECKING
 
-from fe_drivetrain.bearing.mounting import Mounting
+from fe_drivetrain.bearing.geometry import MAX_CLEARANCE
+from fe_drivetrain.bearing.mounting import INITIAL, Mounting
 from fe_drivetrain.bearing.operating_clearance import (
     RING_STEEL,
     OperatingClearance,
     Seats,
     operating_clearance,
+    warm_of,
 )
 from fe_drivetrain.bearing.press_fits import Ring, RingMaterial
 from fe_drivetrain.bearing.tolerances import Limits, class_clearance
@@ -141,7 +143,49 @@ def entry_clearance(
         assert mounting.beginning is not None
         initial = mounting.beginning
     found = operating_clearance(mounting, seats, initial, assumed)
-    return replace(found, normal=normal_of(entry))
+    found = replace(found, normal=normal_of(entry))
+    if entry.kind == "single_row_tapered" or (entry.kind == "ball" and entry.contact_angle):
+        warm = warm_of(mounting.temperatures)
+        growth = shaft.expansion * warm.shaft - housing.expansion * warm.housing
+        found = replace(found, left_out=growth)
+    _check_room(entry, mounting, found)
+    return found
+
+
+_KEYS = {
+    "fit of the inner ring": "mounting.fit.shaft",
+    "fit of the outer ring": "mounting.fit.housing",
+    "smoothing of the seats": "mounting.fit.smoothing",
+    "temperatures": "mounting.temperatures",
+    "speed": "mounting.speed",
+}
+"""What a contribution to the clearance comes from; the first from what it begins with."""
+
+
+def _check_room(entry: Entry, mounting: Mounting, found: OperatingClearance) -> None:
+    """Refuse a clearance in operation with which no rolling bearing runs.
+
+    Raises
+    ------
+    InputError
+        It is beyond a share of the rolling elements; what makes most of it is named.
+    """
+    most = MAX_CLEARANCE * entry.element_diameter / found.normal
+    radial = found.radial
+    worst = max((radial.mean, radial.least, radial.most), key=abs)
+    if abs(worst) <= most:
+        return
+    end = ("mean", "least", "most")[(radial.mean, radial.least, radial.most).index(worst)]
+    sign = 1.0 if worst > 0.0 else -1.0
+    size, name = max((sign * getattr(part, end), key) for key, part in found.parts.items())
+    begins = next(f"mounting.{one}" for one in INITIAL if getattr(mounting, one) is not None)
+    key = _KEYS.get(name, begins)
+    raise InputError(
+        f"radial clearance in operation is {1e3 * worst:.4g} mm but must be from "
+        f"{-1e3 * most:.4g} to {1e3 * most:.4g} mm, {100.0 * MAX_CLEARANCE:g} % of its rolling "
+        f"elements along the contact: {key} makes {1e3 * sign * size:+.4g} mm of it; correct "
+        "that"
+    )
 
 
 def normal_of(entry: Entry) -> float:

@@ -136,6 +136,9 @@ class OperatingClearance:
         Clearance along the contact normal for one of radial clearance.
     assumed : tuple of str
         What was not stated.
+    left_out : float
+        Growth of the shaft less that of the housing over the distance to the other bearing of a
+        pair, in X or O arrangement, which is none of the clearance [m/m]; 0 of other bearings.
     """
 
     radial: Band
@@ -145,6 +148,7 @@ class OperatingClearance:
     hoop_stress: Band
     normal: float
     assumed: tuple[str, ...] = ()
+    left_out: float = 0.0
 
     __repr__ = short_repr
 

@@ -189,6 +189,7 @@ def run_search(asked: CompareRequest) -> int:
     drivetrain = read_drivetrain(scene, parse_settings(asked.set_ or ()))
     load = parse_loads(asked.load or (), loads_of_drivetrain(drivetrain))
     request = _request(asked, load or {})
+    request.check(drivetrain)
     share = parse_tolerance(asked.tolerance)
     from fe_drivetrain.pages.search import show_search
     from fe_drivetrain.studies.design_search import STARTS, search

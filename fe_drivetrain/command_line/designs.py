@@ -92,9 +92,10 @@ def _quantities(
     names: Sequence[str] | None, designs: Collection[Drivetrain]
 ) -> list[Quantity] | None:
     """Quantities of ``--quantity``, which every design must have; None for all."""
+    from fe_drivetrain.drivetrain_file.quantity_names import is_turning
     from fe_drivetrain.drivetrain_file.reading import with_sections
     from fe_drivetrain.shafts.fidelity.quantity import Quantity
-    from fe_drivetrain.studies.turning_quantities import is_turning, turning_quantity
+    from fe_drivetrain.studies.turning_quantities import turning_quantity
 
     if not names:
         return None

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fe_drivetrain.command_line.names import complete_scene
-from fe_drivetrain.command_line.options import Condensed, Matrices, with_options
+from fe_drivetrain.command_line.options import Catalogues, Condensed, Matrices, with_options
 from fe_drivetrain.command_line.settings import (
     DrivetrainSettings,
     parse_settings,
@@ -104,6 +104,7 @@ class ModesRequest:
     ] = False
     condensed: Condensed = False
     matrices: Matrices = False
+    catalogue: Catalogues = None
     out: Annotated[
         Path | None,
         typer.Option(
@@ -151,6 +152,7 @@ def modes_command(context: typer.Context, asked: ModesRequest) -> int:
             tolerance=share,
             condensed=asked.condensed,
             matrices=asked.matrices,
+            catalogues=tuple(asked.catalogue or ()),
             report=run.report,
         )
 
@@ -174,7 +176,16 @@ def _whirl(asked: ModesRequest, drivetrain: Drivetrain, speeds: tuple[float, flo
 def _refuse_beside_whirl(asked: ModesRequest) -> None:
     """Refuse options that whirl does not take."""
     default = ModesRequest("")
-    names = ("level", "generator", "speed", "blades", "excite", "tolerance", "condensed")
+    names = (
+        "level",
+        "generator",
+        "speed",
+        "blades",
+        "excite",
+        "tolerance",
+        "condensed",
+        "catalogue",
+    )
     given = [name for name in names if getattr(asked, name) != getattr(default, name)]
     if given:
         raise InputError(

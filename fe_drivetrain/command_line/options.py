@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 import typer
 
 from fe_drivetrain.command_line.names import complete_scene
-from fe_drivetrain.command_line.terminal import KEPT, guarded
+from fe_drivetrain.command_line.terminal import guarded
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ Matrices = Annotated[
 
 
 def with_options(
-    record: type[_Request], kept: str = KEPT
+    record: type[_Request], kept: str | None = None
 ) -> Callable[[Callable[[typer.Context, _Request], int]], Callable[..., None]]:
     """Let a command of typer take its arguments and options as one record.
 
@@ -158,8 +158,8 @@ def with_options(
     ----------
     record : type
         A dataclass, whose fields are annotated as arguments and options of typer.
-    kept : str
-        What a stop by Ctrl-C leaves on disk, for the message.
+    kept : str or None
+        What a stop by Ctrl-C leaves on disk, see `guarded`.
 
     Returns
     -------
@@ -189,6 +189,15 @@ def with_options(
         return command
 
     return decorate
+
+
+OF_FILES = {
+    "channel": "--channel",
+    "mapping": "--mapping",
+    "skip": "--skip",
+    "resume": "--resume",
+}
+"""Options of how files of hub loads are read, by the names of their parameters."""
 
 
 def require_beside(context: typer.Context, options: Pairs[str, str], beside: str, why: str) -> None:

@@ -17,7 +17,7 @@ from fe_drivetrain.command_line.options import Scheduler
 from fe_drivetrain.command_line.output_options import open_if_asked, wants_json
 from fe_drivetrain.command_line.progress import show_steps
 from fe_drivetrain.command_line.settings import CaseSettings, parse_settings
-from fe_drivetrain.command_line.terminal import FAILED, KEPT, MISTAKE, PASSED, guarded, write
+from fe_drivetrain.command_line.terminal import FAILED, MISTAKE, PASSED, guarded, write
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import scheduled_by
 from fe_drivetrain.common.threads import hold_threads
@@ -282,7 +282,7 @@ def run_and_print(
             return MISTAKE
         return PASSED if all(found.passed for found in results.values()) else FAILED
 
-    return guarded(work, f"finished cases are kept, {KEPT}")
+    return guarded(work, "finished cases are kept, others are as they were")
 
 
 def _prepare_junit(file: Path) -> None:

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from fe_drivetrain.common.components import LARGEST_LOAD
 from fe_drivetrain.common.errors import InputError
 
 CaseSettings = Annotated[
@@ -159,8 +160,14 @@ def parse_loads(texts: Iterable[str], known: Sequence[str]) -> dict[str, float] 
     for name, value in values.items():
         if name not in known:
             raise InputError(f"--load {name!r} is unknown: use one of {', '.join(known)}")
-        if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e15:
+        if isinstance(value, bool) or not isinstance(value, int | float):
             raise InputError(f"--load {name}: {value!r} must be a number, as in --load hub.Fz=-3e5")
+        if not abs(value) < LARGEST_LOAD:
+            unit = "m/s^2" if name.startswith("gravity") else "N m" if ".M" in name else "N"
+            raise InputError(
+                f"--load {name}: {value:g} {unit} must be above {-LARGEST_LOAD:g} and below "
+                f"{LARGEST_LOAD:g} {unit}: correct it"
+            )
     if values and not any(values.values()):
         raise InputError("--load: all loads are zero: give at least one that is not zero")
     return {name: float(value) for name, value in values.items()} or None

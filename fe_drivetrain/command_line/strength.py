@@ -7,7 +7,7 @@ from pathlib import Path
 import typer
 
 from fe_drivetrain.command_line.answer_text import show_outcome
-from fe_drivetrain.command_line.options import with_options
+from fe_drivetrain.command_line.options import OF_FILES, require_beside, with_options
 from fe_drivetrain.command_line.progress import show_steps
 from fe_drivetrain.command_line.settings import parse_settings
 from fe_drivetrain.command_line.showing import Shown
@@ -32,6 +32,8 @@ def strength_command(context: typer.Context, asked: StrengthRequest) -> int:
     hold_threads()
     from fe_drivetrain.report.suite.ownership import check_result_folder
 
+    if not asked.loads:
+        require_beside(context, OF_FILES, "--loads", "is about files of hub loads")
     check_result_folder(asked.folder)
     scene = read_drivetrain(asked.scene, parse_settings(asked.set_ or ()))
     from fe_drivetrain.command_line.strength_files import write_strength

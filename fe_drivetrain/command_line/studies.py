@@ -106,11 +106,18 @@ def advise_command(
     def work() -> int:
         hold_threads()
         drivetrain = read_drivetrain(scene, parse_settings(set_ or ()))
-        loads = parse_loads(load or (), loads_of_drivetrain(drivetrain))
         share = parse_tolerance(tolerance)
+        from fe_drivetrain.drivetrain_file.quantity_names import (
+            check_reaction,
+            is_turning,
+            turning_names,
+        )
         from fe_drivetrain.drivetrain_file.reading import with_sections
-        from fe_drivetrain.studies.turning_quantities import turning_names
 
+        if quantity and not is_turning(quantity, drivetrain):
+            # before what computes it is loaded, which takes most of the time of a mistake
+            check_reaction(quantity, with_sections(drivetrain, scene))
+        loads = parse_loads(load or (), loads_of_drivetrain(drivetrain)) if load else None
         turning = turning_names(drivetrain, (quantity,) if quantity else (), loads)
         if turning:
             name, shown = turning[0], _of_turning(drivetrain, turning[0], share, to_the_top)
@@ -148,10 +155,8 @@ def _of_reactions(
 ) -> Shown[Any]:
     """The adviser for a reaction or a stiffness; a name that is unknown is refused."""
     from fe_drivetrain.pages.advise import show_advise
-    from fe_drivetrain.shafts.fidelity.quantity import Quantity
     from fe_drivetrain.studies.level_advice import advise
 
-    Quantity(name).check(scene)
     return Shown(
         lambda run: advise(scene, name, tolerance, loads, to_the_top, report=run.report),
         show_advise,

@@ -15,15 +15,13 @@ from typing import TYPE_CHECKING, Any, TextIO
 from fe_drivetrain.command_line.option_names import with_options
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import sentence_about
-from fe_drivetrain.common.stopped import STOPPED, TERMINATED, stop_status
+from fe_drivetrain.common.stopped import STOPPED, TERMINATED, left_by_stop, replacing, stop_status
 
 if TYPE_CHECKING:
     from types import FrameType
 
 PASSED, FAILED, MISTAKE = 0, 1, 2
 """Exit statuses: all checks pass, one fails, wrong input."""
-
-KEPT = "results of an earlier run are unchanged"
 
 _AGAIN = 0.2  # s, until a stop that nothing has taken up is raised again
 
@@ -35,15 +33,15 @@ def as_typed() -> str:
     return shlex.join(["fe-drivetrain", *sys.argv[1:]])
 
 
-def guarded(work: Callable[[], int], kept: str = KEPT) -> int:
+def guarded(work: Callable[[], int], kept: str | None = None) -> int:
     """Do the work of a command; mistakes of the user become one sentence on standard error.
 
     Parameters
     ----------
     work : callable
         Returns the exit status.
-    kept : str
-        What a stop by Ctrl-C leaves on disk, for the message.
+    kept : str or None
+        What a stop by Ctrl-C leaves on disk, for the message; None for what it leaves of results.
 
     Returns
     -------
@@ -55,6 +53,7 @@ def guarded(work: Callable[[], int], kept: str = KEPT) -> int:
     SystemExit
         With `TERMINATED`, on SIGTERM.
     """
+    replacing(False)
     try:
         with _unwound_by_signals():
             return work()
@@ -62,7 +61,7 @@ def guarded(work: Callable[[], int], kept: str = KEPT) -> int:
         stop = stop_status(error)
         if stop == TERMINATED:
             raise SystemExit(TERMINATED) from error
-        sentence = f"stopped; {kept}" if stop == STOPPED else _sentence(error)
+        sentence = f"stopped; {kept or left_by_stop()}" if stop == STOPPED else _sentence(error)
         if sentence is None:
             raise
     write(sys.stderr, f"fe-drivetrain: {sentence}\n")

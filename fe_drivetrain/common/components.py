@@ -15,3 +15,6 @@ CYLINDRICAL_STRESSES = ("xx", "rr", "tt", "xr", "xt", "rt")
 
 #: Standard gravity [m/s^2] (CGPM 1901).
 GRAVITY = 9.80665
+
+#: No force or moment of a turbine reaches that [N, N m].
+LARGEST_LOAD = 1e12

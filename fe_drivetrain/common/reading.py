@@ -284,6 +284,23 @@ def _flat(value: Any, key: str) -> dict[str, Any]:
     return found
 
 
+def named_keys(data: Any) -> list[str]:
+    """Every dotted key of nested mappings and lists, entries of lists by name where they have one.
+
+    Parameters
+    ----------
+    data : dict or list
+        Plain data; see `set_by_key`.
+    """
+    found = []
+    parts = data.items() if isinstance(data, dict) else enumerate(data)
+    for part, value in parts:
+        name = next(iter(_names(value)), part) if isinstance(data, list) else part
+        inner = named_keys(value) if isinstance(value, dict | list) else []
+        found += [str(name), *(f"{name}.{key}" for key in inner)]
+    return found
+
+
 def _numbered(target: Any, part: str) -> int | None:
     """Position in a list by its number; None of what is no list, or has no such entry."""
     if not isinstance(target, list) or not part.isdecimal():
@@ -333,7 +350,7 @@ _RULES = {
     "int_from_float": "be a whole number",
     "int_parsing": "be a whole number",
     "int_type": "be a whole number",
-    "string_type": "be a text",
+    "string_type": "be a text, in quotes where it looks like a number",
     "too_short": "have at least {min_length} values, not {actual_length}",
     "too_long": "have at most {max_length} values, not {actual_length}",
     "model_type": "be a mapping of keys to values",
@@ -388,13 +405,13 @@ def fault_sentences(
     faults: list[Any] = error.errors(include_url=False)
     told: set[str] = set()
     for fault in sorted(faults, key=lambda f: f["type"] != "extra_forbidden"):
-        if (key := _key(fault, data)) not in told:
+        if (key := _key(fault, model, data)) not in told:
             told.add(key)
             yield _sentence(fault, faults, model, data)
 
 
 def _sentence(fault: Any, faults: Sequence[Any], model: type[BaseModel], data: Any) -> str:
-    kind, key = fault["type"], _key(fault, data)
+    kind, key = fault["type"], _key(fault, model, data)
     owner, field = _field(model, fault["loc"])
     if kind == "extra_forbidden":
         known = list(owner.model_fields)
@@ -413,17 +430,26 @@ def _sentence(fault: Any, faults: Sequence[Any], model: type[BaseModel], data: A
     words = [
         f["ctx"]["expected"]
         for f in faults
-        if f["type"] == "literal_error" and f is not fault and _key(f, data) == key
+        if f["type"] == "literal_error" and f is not fault and _key(f, model, data) == key
     ]
     rule = ", or ".join([rule, *words])
     return f"{key}{value}{' but' if value else ''} must {rule}{meaning}: correct it"
 
 
-def _key(fault: Any, data: Any) -> str:
+_MARK = re.compile(r"(constrained-)?(str|int|float|bool|none|dict|list|tuple|date)|.*\[.*")
+"""What pydantic calls a member of a union that is no model."""
+
+
+def _key(fault: Any, model: type[BaseModel], data: Any) -> str:
     """Dotted key of a fault, without pydantic's marks of the members of a union."""
-    parts = []
+    parts, models = [], [model]
     for part in fault["loc"]:
-        if part == "float" or "[" in str(part):
+        owners = [one for one in models if part in one.model_fields]
+        if owners:
+            models = [m for one in owners for m in _models_in(one.model_fields[part].annotation)]
+        elif not (isinstance(part, int) or (isinstance(data, dict) and part in data)) and (
+            _MARK.fullmatch(part) or part in [one.__name__ for one in models]
+        ):
             continue
         names: list[str] = []
         if isinstance(data, list | tuple) and isinstance(part, int) and part < len(data):

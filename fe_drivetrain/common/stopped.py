@@ -3,9 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextvars import ContextVar
 
 STOPPED, TERMINATED = 130, 143
 """Exit statuses: stopped by Ctrl-C, stopped by SIGTERM."""
+
+
+EARLIER = "results of an earlier run are unchanged"
+NOTHING = "no results are written"
+
+_replaces: ContextVar[bool] = ContextVar("_replaces", default=False)
+
+
+def replacing(earlier: bool) -> None:
+    """Note whether a run that begins has results of an earlier one to replace.
+
+    Parameters
+    ----------
+    earlier : bool
+        Whether there are any.
+    """
+    _replaces.set(earlier)
+
+
+def left_by_stop() -> str:
+    """What a stop leaves of results, as the end of a sentence."""
+    return EARLIER if _replaces.get() else NOTHING
 
 
 def causes(error: BaseException | None) -> Iterator[BaseException]:

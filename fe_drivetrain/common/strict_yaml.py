@@ -47,6 +47,23 @@ def no_truth_value(value: Any) -> Any:
     return value
 
 
+def digits_as_text(value: Any) -> Any:
+    """A name of digits alone, such as 22330, which YAML reads as a number where it has no quotes.
+
+    Parameters
+    ----------
+    value : Any
+        From YAML.
+
+    Returns
+    -------
+    value : Any
+        Text of a whole number; anything else as it is.
+    """
+    whole = isinstance(value, int) or (isinstance(value, float) and value.is_integer())
+    return str(int(value)) if whole and not isinstance(value, bool) else value
+
+
 class PlainLoader(yaml.SafeLoader):
     """For ``yaml.load``; raises yaml.YAMLError, or ValueError for an integer beyond reason."""
 

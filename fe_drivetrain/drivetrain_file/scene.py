@@ -12,7 +12,8 @@ from pydantic import (
 
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.reading import value_by_key
+from fe_drivetrain.common.near_words import did_you_mean
+from fe_drivetrain.common.reading import named_keys, value_by_key
 from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit, Keys, Springs
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain, Gears
@@ -365,7 +366,9 @@ def with_materials(scene: Scene) -> Scene:
     return scene.model_copy(update={"materials": own | dict(scene.materials)})
 
 
-def nominal_values(scene: Drivetrain, keys: Sequence[str]) -> list[float]:
+def nominal_values(
+    scene: Drivetrain, keys: Sequence[str], what: str = "uncertainty of"
+) -> list[float]:
     """The numbers that dotted keys lead to; a bearing unit is addressed by its bearing's name.
 
     Parameters
@@ -374,23 +377,31 @@ def nominal_values(scene: Drivetrain, keys: Sequence[str]) -> list[float]:
         The scene, or another drivetrain.
     keys : Sequence[str]
         Keys as `fe_drivetrain.drivetrain_file.change_scene` takes them.
+    what : str
+        What the keys are of, for messages.
 
     Raises
     ------
     InputError
         There is none, or it is no number.
     """
+    data = plain_data(scene)
+    return [_number(data, key, what) for key in keys]
+
+
+def plain_data(scene: Drivetrain) -> dict[str, Any]:
+    """All that keys may lead to, the program's materials that are used with it."""
     stated = with_materials(scene) if isinstance(scene, Scene) else scene
-    data = stated.model_dump(mode="json")
-    return [_number(data, key) for key in keys]
+    return stated.model_dump(mode="json")
 
 
-def _number(data: Any, key: str) -> float:
+def _number(data: Any, key: str, what: str) -> float:
     value = value_by_key(data, key)
     if isinstance(value, bool) or not isinstance(value, int | float):
+        near = did_you_mean(key, named_keys(data))
         raise InputError(
-            f"uncertainty of {shown(key)}: the scene has no number there: name a value that it "
-            "gives, as in shaft.sections.0.outer_diameter"
+            f"{what} {shown(key)}: the scene has no number there: "
+            + (near or "name a value that it gives, as in shaft.sections.0.outer_diameter")
         )
     return float(value)
 

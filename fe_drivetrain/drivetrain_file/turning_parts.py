@@ -25,8 +25,10 @@ from fe_drivetrain.geometry.shaft import Section
 STEEL = Material(youngs_modulus=2.06e11, poisson_ratio=0.3, density=7850.0)
 """Steel of shafts, where nothing else is given."""
 
-#: What no machine's inertia [kg m^2], mass [kg], stiffness [N/m, N m/rad] or damping is beyond.
-MAX_INERTIA, MAX_MASS, MAX_STIFFNESS, MAX_DAMPING = 1e10, 1e7, 1e20, 1e12
+#: What no machine's inertia [kg m^2], mass [kg], stiffness [N/m, N m/rad] or damping is beyond. A
+#: stiffness of 1e16 is rigid beside any other, and leaves 1e-8 of the forces to round-off; of 1e20
+#: statics take the other springs for none.
+MAX_INERTIA, MAX_MASS, MAX_STIFFNESS, MAX_DAMPING = 1e10, 1e7, 1e16, 1e12
 #: Minimum inertia [kg m^2]: where a table has none, a body may turn with so little.
 MIN_INERTIA = 1e-9
 #: What no shaft is longer than, no centre distance, face or diameter larger than [m].

@@ -248,7 +248,8 @@ def face_factor(misalignment: float, stiffness: float, line_load: float) -> floa
     stiffness : float
         Mesh stiffness per face width, c_gamma_beta [N/m^2].
     line_load : float
-        Mean, F_m / b [N/m].
+        Mean, F_m / b with F_m = F_t K_A K_gamma K_v [N/m], so that the stress of a fixed
+        misalignment falls with the torque.
 
     Returns
     -------

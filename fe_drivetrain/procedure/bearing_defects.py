@@ -7,9 +7,17 @@ from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 
-from fe_drivetrain.bearing.catalogue import name_of, read_bearing_catalogue
+from fe_drivetrain.bearing.catalogue import (
+    Entry,
+    catalogue_entry,
+    fitted_entry,
+    name_of,
+    read_bearing_catalogue,
+)
 from fe_drivetrain.bearing.defect_frequencies import DefectFrequencies, defect_frequencies
-from fe_drivetrain.bearing.geometry import count
+from fe_drivetrain.bearing.fitted_rollers import fitted_rollers
+from fe_drivetrain.bearing.geometry import Row, count
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.catalogue_seats import bearing_of, catalogued
@@ -39,6 +47,8 @@ class BearingDefects:
         Speed of one ring against the other over that of the rotor, without a sign.
     parts : tuple of str
         Springs of the bearing in a model; of planets those of each.
+    insides : tuple of DefectFrequencies
+        `per_turn` of every inside that fits its catalogue's page; empty of an inside that is known.
     """
 
     name: str
@@ -48,6 +58,14 @@ class BearingDefects:
     elements: int
     speed_ratio: float
     parts: tuple[str, ...]
+    insides: tuple[DefectFrequencies, ...] = ()
+
+    __repr__ = short_repr
+
+    def ends(self, kind: str) -> tuple[float, float] | None:
+        """Least and most periods of a defect over all insides that fit the page; None of others."""
+        of_all = [one.by_name()[kind] for one in self.insides]
+        return (min(of_all), max(of_all)) if of_all else None
 
     def excitations(self, parts: Mapping[str, object]) -> tuple[Excitation, ...]:
         """Excitations by a defect of each kind, as far as a model has springs of the bearing.
@@ -102,12 +120,34 @@ def bearing_defects(
         speeds = (0.0, ratio) if planets else (ratio, 0.0)
         frequencies = defect_frequencies(own[0], *(ONCE_A_SECOND * one for one in speeds))
         parts = tuple(name.replace(" pin", f" pin {k + 1}") for k in range(planets)) or (name,)
+        insides = tuple(
+            defect_frequencies(row, *(ONCE_A_SECOND * one for one in speeds))
+            for row in _insides(catalogue_entry(named, *catalogues))
+        )
         found.append(
             BearingDefects(
-                name, name_of(named), frequencies, len(own), count(own[0]), abs(ratio), parts
+                name,
+                name_of(named),
+                frequencies,
+                len(own),
+                count(own[0]),
+                abs(ratio),
+                parts,
+                insides,
             )
         )
     return tuple(found), tuple(unknown)
+
+
+def _insides(entry: Entry) -> list[Row]:
+    """First row of every inside that fits an entry's page; none of an inside that is known."""
+    if entry.page is None or not entry.fitted:
+        return []
+    fitted = fitted_rollers(entry.page)
+    return [
+        fitted_entry(entry.page, member, fitted).bearing(entry.title).rows[0]
+        for member in range(len(fitted))
+    ]
 
 
 def ring_speeds(machine: MachineTable) -> dict[str, float]:

@@ -238,7 +238,9 @@ def bars(
     stacked: bool = False,
     ends: Mapping[str, Mapping[str, tuple[float, float]]] | None = None,
 ) -> Chart:
-    """Horizontal bars, labels down the side in their order.
+    """Horizontal bars, labels down the side in their order; dots on a logarithmic axis.
+
+    A bar says how much by its length from zero, which a logarithmic axis does not have.
 
     Parameters
     ----------
@@ -257,14 +259,13 @@ def bars(
     """
     data = [
         {
-            "type": "bar",
-            "orientation": "h",
+            **_marks(number, least is not None),
             "name": name,
             "y": list(values),
             "x": rounded([v if least is None else max(v, least) for v in values.values()]),
             **_spread(values, (ends or {}).get(name, {})),
         }
-        for name, values in groups.items()
+        for number, (name, values) in enumerate(groups.items())
     ]
     labels = {label for values in groups.values() for label in values}
     count = len(labels) if stacked else sum(len(values) for values in groups.values())
@@ -272,9 +273,20 @@ def bars(
     figure.figure["layout"] |= {
         "barmode": "stack" if stacked else "group",
         "height": 160 + (34 if stacked else 24) * max(count, 4),
-        "yaxis": {"autorange": "reversed", "automargin": True},
+        "yaxis": {"autorange": "reversed", "automargin": True, "type": "category"},
     }
     return figure
+
+
+_SYMBOLS = ("circle", "diamond", "square", "cross", "triangle-up")
+
+
+def _marks(number: int, dots: bool) -> dict[str, Any]:
+    """What a trace of `bars` is drawn as: bars, or dots of a symbol of its own."""
+    if not dots:
+        return {"type": "bar", "orientation": "h"}
+    symbol = _SYMBOLS[number % len(_SYMBOLS)]
+    return {"type": "scatter", "mode": "markers", "marker": {"size": 10, "symbol": symbol}}
 
 
 def _spread(values: Mapping[str, float], ends: Mapping[str, tuple[float, float]]) -> dict[str, Any]:

@@ -27,7 +27,7 @@ from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.drivetrain_file.without_weight import weightless
 from fe_drivetrain.dynamics.bodies.condensed_rungs import plain_rungs
 from fe_drivetrain.dynamics.bodies.machine import Machine
-from fe_drivetrain.report.charts import bars
+from fe_drivetrain.report.charts import bars, error_bars
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gearbox_bearings import (
@@ -57,6 +57,7 @@ from fe_drivetrain.turbine_loads.histories.sites import Site
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
 
 _SEEN = 4  # bearings of which a chart shows lives of all kinds at one view
+_LEAST_SHOWN = 0.1  # of a life: where its band is cut on a logarithmic axis
 _MANY = 8  # files, each of every bearing, for which it pays to start processes
 
 
@@ -120,11 +121,25 @@ class LifeResult(Result):
             caption += f", {kinds[0]}"
         if any(life.bands["L10mr"] is not None for life in self.lives):
             caption += ", ± two standard errors of files of the same wind"
+        if any(life.inside is not None for life in self.lives):
+            caption += ", over all insides that fit the page"
         found = bars(caption, groups, "life [years]", least=least)
         for trace, (kind, lives) in zip(found.figure["data"], ending.items(), strict=True):
-            bands = [life.bands[kind] or 0.0 for life in lives]
-            trace["error_x"] = {"type": "data", "array": bands, "thickness": 1.2}
+            years = np.array([life.years[kind] for life in lives])
+            low, high = np.array([_ends(life, kind) for life in lives]).reshape(-1, 2).T
+            trace |= error_bars("x", low, years, high)
         return found
+
+
+def _ends(one: BearingLife, kind: str) -> tuple[float, float]:
+    """Least and largest life [years] by its bands, of what is drawn on a logarithmic axis."""
+    years, band = one.years[kind], one.bands[kind] or 0.0
+    low, high = years - band, years + band
+    if one.inside is not None and kind in one.inside.years:
+        least, most = one.inside.years[kind]
+        low, high = min(low, least), max(high, most)
+    # two standard errors may reach below zero, where such an axis ends
+    return max(low, _LEAST_SHOWN * years), high
 
 
 def life(

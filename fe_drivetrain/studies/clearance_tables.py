@@ -6,6 +6,8 @@ from fe_drivetrain.bearing.operating_clearance import Band, OperatingClearance
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 
+_GROWS = 1e-6  # m in each metre between two bearings: what is less is nothing beside a clearance
+
 
 def clearance_parts(name: str, found: OperatingClearance) -> list[Record]:
     """Contributions to a radial clearance, their sum, its probable range, and what fits press.
@@ -52,6 +54,16 @@ def state_clearance(found: Findings, name: str, clearance: OperatingClearance) -
         found.note(
             f"Bearing {name}: its inner ring may have no pressure on the shaft, and creep under a "
             "load that turns against it: give a tighter fit."
+        )
+    if abs(growth := clearance.left_out) > _GROWS:
+        parts, changes = ("shaft", "housing"), ("less", "more")
+        (part, other), (x, o) = (parts, changes) if growth > 0.0 else (parts[::-1], changes[::-1])
+        found.note(
+            f"Bearing {name} carries axial force one way, as one of a pair. Its {part} grows "
+            f"{1e6 * abs(growth):.3g} µm more than its {other} for each metre to the other "
+            f"bearing: {x} axial clearance of both together face to face (X), {o} back to "
+            "back (O). That is not in its clearance, since the file does not say which: add it to "
+            "the clearance that you state."
         )
     meant = clearance.parts.get("mounted")
     if radial.least < 0.0 and (meant is None or meant.mean >= 0.0):

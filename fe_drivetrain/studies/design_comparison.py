@@ -11,6 +11,7 @@ import numpy as np
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.quantity_names import turning_names
 from fe_drivetrain.drivetrain_file.reading import with_sections
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.drivetrain_file.units import unit_of_key
@@ -26,7 +27,6 @@ from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
 from fe_drivetrain.studies.turning_comparison import TURNING_RULE, turning_differences
-from fe_drivetrain.studies.turning_quantities import turning_names
 
 #: Changes that the answer names, and that have a curve of their own.
 _NAMED, _CURVES = 3, 6

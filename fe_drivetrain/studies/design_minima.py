@@ -294,6 +294,22 @@ def open_prices(ranges: Floats) -> Bools:
     return np.asarray(ranges[:, 1] - ranges[:, 0] > OPEN * np.abs(ranges).max(initial=0.0))
 
 
+class ConflictError(InputError):
+    """No design keeps all limits.
+
+    Parameters
+    ----------
+    sentence : str
+        Which limits conflict, and what comes nearest.
+    violation : float
+        Share by which the nearest breaks the worst limit.
+    """
+
+    def __init__(self, sentence: str, violation: float = np.inf) -> None:
+        super().__init__(sentence)
+        self.violation = violation
+
+
 def infeasible(problem: Problem, near: Floats) -> InputError:
     """Which limits conflict, and what comes nearest to keeping them.
 
@@ -305,7 +321,7 @@ def infeasible(problem: Problem, near: Floats) -> InputError:
         Place to begin at.
     """
     if problem.corrected(near) is None and problem.trials.fault is not None:
-        return InputError(f"no design within the ranges can be built: {problem.trials.fault}")
+        return InputError(f"no such design can be built: {problem.trials.fault}")
     worst = least_violation(problem.functions, near)
     shares = np.zeros(len(problem.limits))
     for row, number in enumerate(problem.rows):
@@ -324,17 +340,22 @@ def infeasible(problem: Problem, near: Floats) -> InputError:
         for key, end in zip(problem.trials.asked.request.ranges, worst.at_ends, strict=True)
         if abs(end) > 1e-9
     ]
+    request = problem.trials.asked.request
+    fixes = ["widen the ranges"] if request.ranges else []
+    fixes += ["add values to the lists"] if request.lists else []
+    of = f"within the ranges{' and lists' * bool(request.lists)}" if request.ranges else "listed"
     what = (
-        f"{' and '.join(conflict)} conflict: no design within the ranges keeps them together"
+        f"{' and '.join(conflict)} conflict: no design {of} keeps them together"
         if len(conflict) > 1
-        else f"{conflict[0]} is kept by no design within the ranges"
+        else f"{conflict[0]} is kept by no design {of}"
         if conflict
-        else "no design within the ranges keeps all limits"
+        else f"no design {of} keeps all limits"
     )
     several = len(conflict) > 1
     there = f" ({'; '.join(ends)})" if ends else ""
-    return InputError(
+    return ConflictError(
         f"{what}; the nearest, {nearest}{there}, breaks {'each' if several else 'it'} by "
-        f"{100.0 * violation:.3g} %: relax {'one of them' if several else 'it'}, or widen the "
-        "ranges"
+        f"{100.0 * violation:.3g} %: relax {'one of them' if several else 'it'}, or "
+        f"{' or '.join(fixes)}",
+        abs(violation),
     )

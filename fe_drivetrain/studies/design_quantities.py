@@ -28,6 +28,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.near_words import did_you_mean
 from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.quantity_names import is_turning
 from fe_drivetrain.drivetrain_file.reading import with_sections
 from fe_drivetrain.drivetrain_file.scene import Coupling, Scene
 from fe_drivetrain.dynamics import plain_rungs
@@ -47,7 +48,7 @@ from fe_drivetrain.studies.design_request import DesignRequest
 from fe_drivetrain.studies.rolling_bearings import OneBearing, bearings_of
 from fe_drivetrain.studies.turning_advice import finest_modes
 from fe_drivetrain.studies.turning_model import TurningModel
-from fe_drivetrain.studies.turning_quantities import is_turning, turning_quantity
+from fe_drivetrain.studies.turning_quantities import turning_quantity
 from fe_drivetrain.studies.unused import RPM
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 from fe_drivetrain.turbine_loads.hub_loads.recorded import read_recorded, recorded_files
@@ -113,6 +114,9 @@ class DesignQuantities:
         self.units = {name: self._unit(name) for name in self.names}
         for limit in request.limits:
             limit.size(self.units[limit.name])
+        # what is shown of a limit has its unit, also where SI was meant without a word
+        limits = tuple(limit.in_unit(self.units[limit.name]) for limit in request.limits)
+        self.request = replace(request, limits=limits)
         if any(self._kind(name) in UNDER_LOAD for name in self.names) and not request.load:
             raise InputError(
                 f"{', '.join(n for n in self.names if self._kind(n) in UNDER_LOAD)} needs a load: "

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Any
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.near_words import did_you_mean
+from fe_drivetrain.common.reading import named_keys, value_by_key
 from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.drivetrain_file.scene import nominal_values
+from fe_drivetrain.drivetrain_file.scene import nominal_values, plain_data
 from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Files
+
+_VARIABLE = "design variable"
 
 MAXIMUM = 50
 """Most combinations of values that stand in lists."""
@@ -60,6 +65,10 @@ class Limit:
         """As it is written."""
         sign = ">=" if self.at_least else "<="
         return f"{self.name}{sign}{self.value:g} {self.unit}".rstrip()
+
+    def in_unit(self, unit: str) -> Limit:
+        """The limit with the unit that it has where none was given, that of its quantity."""
+        return self if self.unit or unit == "-" else replace(self, unit=unit)
 
     def size(self, unit: str) -> float:
         """Size of its unit in that of the quantity.
@@ -190,10 +199,35 @@ class DesignRequest:
             for values in product(*(self.vary[key] for key in keys))
         ]
 
+    def check(self, drivetrain: Drivetrain) -> None:
+        """Refuse keys that the drivetrain does not have, before any work is done.
+
+        Parameters
+        ----------
+        drivetrain : Drivetrain
+            The drivetrain that is varied.
+
+        Raises
+        ------
+        InputError
+            A key leads nowhere, or a range is of no number.
+        """
+        nominal_values(drivetrain, list(self.ranges), _VARIABLE)
+        data = plain_data(drivetrain)
+        for key in self.lists:
+            above, _, last = key.rpartition(".")
+            owner = value_by_key(data, above) if above else data
+            if not isinstance(owner, dict) or last not in owner:
+                near = did_you_mean(key, named_keys(data))
+                raise InputError(
+                    f"{_VARIABLE} {shown(key)}: the drivetrain has no such key: "
+                    + (near or "name one that its file may have, as in bearing_units.0.catalogue")
+                )
+
     def start(self, drivetrain: Drivetrain) -> list[float]:
         """Values of the drivetrain itself in its ranges, each from 0 to 1."""
         keys = list(self.ranges)
-        found = nominal_values(drivetrain, keys)
+        found = nominal_values(drivetrain, keys, _VARIABLE)
         return [
             min(max((value - low) / (high - low), 0.0), 1.0)
             for value, (low, high) in zip(found, self.ranges.values(), strict=True)

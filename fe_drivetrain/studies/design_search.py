@@ -189,7 +189,9 @@ def search(
         raise InputError(f"front {front!r} is of no limit: use one of {', '.join(names)}")
     found, steps = Findings(), Steps(report)
     found.about(drivetrain)
+    request.check(drivetrain)
     asked = DesignQuantities(drivetrain, request)
+    request = asked.request
     with steps.step("the drivetrain as it is"):
         now = asked.values(drivetrain)
     _require_single_values(request, now)
@@ -256,7 +258,8 @@ def _candidates(
     request = asked.request
     counts = {name: len(values) for name, values in now.items()}
     first = np.array(request.start(asked.drivetrain))
-    found, conflicts = [], []
+    found: list[_Candidate] = []
+    conflicts: list[InputError] = []
     choices = request.choices()
     for number, choice in enumerate(choices, 1):
         trials = DesignTrials(asked, counts, choice)
@@ -279,7 +282,7 @@ def _candidates(
         near = [np.abs(one.at - kept[0].at).max(initial=0.0) < FAR for one in minima]
         found.append(_Candidate(problem, kept[0], kept[0], sum(near), kept[1:], path))
     if not found:
-        raise conflicts[0]
+        raise min(conflicts, key=lambda one: getattr(one, "violation", np.inf))
     return sorted(found, key=lambda one: one.value), conflicts
 
 

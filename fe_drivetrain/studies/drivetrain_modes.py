@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import ClassVar, NamedTuple
 
 from fe_drivetrain.common.errors import InputError
@@ -38,6 +39,7 @@ from fe_drivetrain.studies.mode_parts import described
 from fe_drivetrain.studies.mode_record import Modes
 from fe_drivetrain.studies.mode_speeds import in_operation
 from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.rotor_speeds import FARTHEST, check_speed, rated_speed
 
 SHOWN = 16
 """Number of modes that are described, and whose shapes are kept."""
@@ -86,6 +88,7 @@ def modes(
     tolerance: float = 0.05,
     condensed: bool = False,
     matrices: bool = False,
+    catalogues: Sequence[str | Path] = (),
     report: Progress = silent,
 ) -> ModesResult:
     """Compute natural modes of a drivetrain, and which excitations meet them in operation.
@@ -118,6 +121,8 @@ def modes(
     matrices : bool
         Whether the last level has gearbox bearings with a catalogue entry by the 6 x 6 stiffness of
         their rollers at rated torque, see `fe_drivetrain.dynamics.with_matrices`.
+    catalogues : sequence of str or Path
+        Bearing catalogues beside the program's own, for defect frequencies.
     report : Progress
         Called with the name of each step as it begins.
 
@@ -128,6 +133,9 @@ def modes(
         message names them.
     """
     _check(generator, speeds, speed, blades, tolerance)
+    for name, asked in (("range of operation", speeds and speeds[1]), ("rotor", speed)):
+        if asked is not None:
+            check_speed(name, asked, rated_speed(drivetrain), FARTHEST, "change it")
     found, steps = Findings(), Steps(report)
     found.seed = None
     found.about(drivetrain)
@@ -139,7 +147,7 @@ def modes(
     rungs = None
     if condensed:
         rungs = asked_rungs(drivetrain, machine, condensed=True, matrices=matrices, steps=steps)
-    defects, unknown = bearing_defects(machine)
+    defects, unknown = bearing_defects(machine, catalogues)
     record = _record(drivetrain, machine, asked, (acting, defects), over, speed, steps, rungs)
     assume_housings(found, asked.rung.assumes)
     if rungs is not None:
@@ -162,6 +170,7 @@ def modes(
             tolerance=tolerance,
             condensed=condensed,
             matrices=matrices,
+            catalogues=[Path(one).name for one in catalogues],
         ),
     )
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.components import FORCES, LARGEST_LOAD
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.studies.gear_machine import GearTrain
@@ -22,11 +22,8 @@ from fe_drivetrain.studies.gear_spectra import (
     files_spectrum,
     stated_spectrum,
 )
+from fe_drivetrain.studies.torque_classes import Rows
 from fe_drivetrain.turbine_loads.histories.sites import HOURS_A_YEAR, Site
-
-Rows = Sequence[Sequence[float]]
-"""Torque [N m], hours and, where it differs, speed [rad/s] of each class of a spectrum."""
-
 
 _MOST = 20
 """Reference torques to which classes may reach."""
@@ -131,9 +128,10 @@ def hub_wrench(hub: Mapping[str, float]) -> Floats:
                 f"gears: {name!r} is no load of the hub beside its torque: use one of Fx, Fy, Fz, "
                 f"My, Mz, and {argument('torque')} for Mx"
             )
-        if not abs(float(value)) < 1e12:
+        if not abs(float(value)) < LARGEST_LOAD:
             raise InputError(
-                f"gears: {name} of the hub is {value:g} N or N m but must be below 1e12: correct it"
+                f"gears: {name} of the hub is {value:g} N or N m but must be below "
+                f"{LARGEST_LOAD:g}: correct it"
             )
         found[FORCES.index(name)] = float(value)
     return found
@@ -178,12 +176,7 @@ def loads_of(
         asked_for = hours if site is None else site.years * HOURS_A_YEAR
         return GearLoads(whole, whole.hub[nearest], alone, True, asked_for, alone)
     if spectrum is not None:
-        if speed is None and any(len(row) < 3 for row in spectrum):
-            raise InputError(
-                "gears: no speed of the rotor is known, by which a torque spectrum counts turns: "
-                f"give operation.rotor_speed, or {argument('rotor_speed_rpm')}"
-            )
-        whole = stated_spectrum(spectrum, beside, speed or 0.0, width)
+        whole = stated_spectrum(spectrum, beside, speed, width)
         if not whole.hours > 0.0:
             raise InputError("the torque spectrum lasts 0 h: give hours above 0")
         if asked.hours is not None:

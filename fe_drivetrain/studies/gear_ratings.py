@@ -15,7 +15,7 @@ from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.gear_answers import GearAnswer, LevelAnswer, MeshAnswer
 from fe_drivetrain.studies.gear_findings import TORQUE_ALONE, gear_chart, state_findings
-from fe_drivetrain.studies.gear_loads import GearLoading, Rows, check_loading, loads_of
+from fe_drivetrain.studies.gear_loads import GearLoading, check_loading, loads_of
 from fe_drivetrain.studies.gear_losses import DrivetrainLosses, check_losses, drivetrain_losses
 from fe_drivetrain.studies.gear_machine import GearTrain, gear_train
 from fe_drivetrain.studies.gear_meshes import GearMesh, gear_meshes
@@ -26,6 +26,7 @@ from fe_drivetrain.studies.loss_findings import state_losses
 from fe_drivetrain.studies.rated_gears import GearRating
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.spline_findings import state_splines
+from fe_drivetrain.studies.torque_classes import Rows, torque_classes
 from fe_drivetrain.turbine_loads.histories.sites import Site
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
 
@@ -209,6 +210,8 @@ def prepared(
     """
     check_loading(options, loading)
     train = gear_train(drivetrain, options, torque)
+    if loading.spectrum is not None:
+        torque_classes(loading.spectrum, train.conditions.speed)
     meshes, left_out = gear_meshes(train.machine, train.strengths)
     if options.losses:
         check_losses(drivetrain, train, options.lubricant)

@@ -20,6 +20,7 @@ from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.entrance import Entrance
 from fe_drivetrain.shafts.response.entering import AtFront, at_front
 from fe_drivetrain.studies.history_options import HistoryOptions
+from fe_drivetrain.studies.torque_classes import Rows, torque_classes
 from fe_drivetrain.turbine_loads.histories.sites import (
     HOURS_A_YEAR,
     Site,
@@ -208,9 +209,7 @@ def constant_spectrum(torque: float, hub: Floats, hours: float, speed: float) ->
     return TorqueSpectrum(abs(torque), np.array([torque]), seconds, turns, hub[None, :])
 
 
-def stated_spectrum(
-    rows: Sequence[Sequence[float]], hub: Floats, speed: float, width: float
-) -> TorqueSpectrum:
+def stated_spectrum(rows: Rows, hub: Floats, speed: float | None, width: float) -> TorqueSpectrum:
     """A spectrum that is given.
 
     Parameters
@@ -220,7 +219,7 @@ def stated_spectrum(
         third number.
     hub : ndarray, (6,)
         Other loads of the hub, of all classes [N, N m].
-    speed : float
+    speed : float or None
         Rated speed, of classes without one [rad/s].
     width : float
         Width of the classes, for their band [N m].
@@ -228,20 +227,11 @@ def stated_spectrum(
     Raises
     ------
     InputError
-        There is no class, or a row is none.
+        A class is none, see `torque_classes`.
     """
-    if not len(rows):
-        raise InputError("the torque spectrum has no class: give torque in N m and hours of one")
-    for number, row in enumerate(rows, start=1):
-        if len(row) not in (2, 3) or not np.isfinite(row).all() or not row[1] >= 0.0:
-            raise InputError(
-                f"class {number} of the torque spectrum is {list(row)}: give its torque in N m, "
-                "its hours, at least 0, and its speed in rad/s where that is another one"
-            )
-    torques = np.array([float(row[0]) for row in rows])
-    seconds = np.array([3600.0 * float(row[1]) for row in rows])
-    speeds = np.array([float(row[2]) if len(row) == 3 else speed for row in rows])
-    turns = seconds * np.abs(speeds) / (2.0 * np.pi)
+    torques, hours, speeds = np.array(torque_classes(rows, speed)).T
+    seconds = 3600.0 * hours
+    turns = seconds * speeds / (2.0 * np.pi)
     return TorqueSpectrum(width, torques, seconds, turns, np.tile(hub, (len(rows), 1)))
 
 

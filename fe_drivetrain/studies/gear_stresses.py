@@ -104,21 +104,48 @@ class MeshStresses:
         mesh = self.mesh
         return log(root_face_factor(np.e, mesh.pair.face_width, mesh.tooth_height))
 
-    def misaligned(self, rotor: float) -> float:
-        """K_Hbeta by the helix deviation of the accuracy grade alone; 1 without a grade."""
+    def misaligned(self, rotor: float, speed: float | None, start: LoadFactors) -> float:
+        """K_Hbeta by the helix deviation of the accuracy grade alone; 1 without a grade.
+
+        The deviation is fixed, so that the factor grows as the load falls. That load is F_m = F_t
+        K_A K_gamma K_v: less would let the stress grow as the torque of a turning gear falls.
+
+        Parameters
+        ----------
+        rotor : float
+            Torque of the rotor [N m].
+        speed : float or None
+            Its speed [rad/s]; without one K_v is that of `start`.
+        start : LoadFactors
+            With K_A and K_gamma.
+        """
         deviations = self.mesh.deviations
         if deviations is None:
             return 1.0
-        return face_factor(deviations[2], self.mesh.stiffness.misaligned, self.line_load(rotor))
+        K = self._with_dynamics(rotor, speed, start, transverse=False)
+        load = self.line_load(rotor) * K.K_A * K.K_gamma * K.K_v
+        return face_factor(deviations[2], self.mesh.stiffness.misaligned, load)
 
-    def formula(self, rotor: float) -> tuple[float, float]:
-        """K_gamma and K_Hbeta as given, or by formula: of the torsional level."""
+    def formula(self, rotor: float, speed: float | None, application: float) -> tuple[float, float]:
+        """K_gamma and K_Hbeta as given, or by formula: of the torsional level.
+
+        Parameters
+        ----------
+        rotor : float
+            Torque of the rotor [N m].
+        speed : float or None
+            Its speed [rad/s].
+        application : float
+            K_A.
+        """
         mesh, given = self.mesh, self.mesh.strength
         sharing = SHARING.get(mesh.planets, SHARING[7])
         if given is not None and given.sharing is not None and mesh.planets > 1:
             sharing = given.sharing
         faces = {} if given is None else given.face_load or {}
-        return sharing, faces.get(mesh.key) or self.misaligned(rotor)
+        if mesh.key in faces:
+            return sharing, faces[mesh.key]
+        return sharing, self.misaligned(rotor, speed, LoadFactors(application, sharing))
 
     def factors(self, rotor: float, speed: float | None, start: LoadFactors) -> LoadFactors:
         """Load factors at a torque and speed of the rotor, those of `start` given.
@@ -132,6 +159,11 @@ class MeshStresses:
         start : LoadFactors
             With K_A, K_gamma and K_Hbeta.
         """
+        return self._with_dynamics(rotor, speed, start, transverse=True)
+
+    def _with_dynamics(
+        self, rotor: float, speed: float | None, start: LoadFactors, transverse: bool
+    ) -> LoadFactors:
         mesh, given, deviations = self.mesh, self.mesh.strength, self.mesh.deviations
         dynamic = None if given is None else (given.dynamic or {}).get(mesh.key)
         start = start if dynamic is None else replace(start, K_v=dynamic)
@@ -147,7 +179,7 @@ class MeshStresses:
             deviations[:2],
             mesh.tooth_height,
         )
-        return method_b_factors(of, start, dynamic=dynamic is None)
+        return method_b_factors(of, start, dynamic is None, transverse)
 
     def _running(self, rotor: float, speed: float) -> Running:
         flank, fillet = (4.8e-6, 4.8e-6), (20e-6, 20e-6)

@@ -12,6 +12,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.quantity_names import turning_names
 from fe_drivetrain.drivetrain_file.reading import with_sections
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import chart
@@ -32,7 +33,6 @@ from fe_drivetrain.shafts.uncertainty.sampling import SHARE, Band, Shares
 from fe_drivetrain.studies.input_effects import InputEffects, QuantityEffects, input_effects
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
-from fe_drivetrain.studies.turning_quantities import turning_names
 from fe_drivetrain.studies.turning_uncertainty import TurningSamples, turning_study
 
 

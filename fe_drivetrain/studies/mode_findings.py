@@ -188,6 +188,12 @@ def _tables(found: Findings, modes: Modes, shown: int) -> None:
         found.data("register", register_rows(modes))
     if modes.bearing_defects:
         found.data("bearing defects", defect_rows(modes))
+        if fitted := [one.name for one in modes.bearing_defects if one.insides]:
+            found.note(
+                f"The page of {', '.join(fitted)} does not print what is inside: defect "
+                "frequencies are those of the middle of all insides that fit it, and the table has "
+                "their range."
+            )
 
 
 def _check_energy(found: Findings, modes: Modes) -> None:

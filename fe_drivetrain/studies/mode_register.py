@@ -130,6 +130,11 @@ def defect_rows(modes: Modes) -> list[Record]:
         if modes.speeds is not None:
             turns = modes.speeds[1] / (2.0 * np.pi)
             row |= {f"{kind} [Hz]": turns * value for kind, value in kinds.items()}
+        if any(other.insides for other in modes.bearing_defects):
+            for kind in kinds:
+                low, high = one.ends(kind) or (None, None)
+                row[f"{kind} in a turn, least of all insides"] = low
+                row[f"{kind} in a turn, most of all insides"] = high
         rows.append(row)
     return rows
 

@@ -10,6 +10,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies.advice import Rung
+from fe_drivetrain.dynamics.bodies.mesh_loads import MeshLoads
 from fe_drivetrain.gear.damage import ToothDamage
 from fe_drivetrain.studies.gear_levels import LoadSpread, Spread
 from fe_drivetrain.studies.gear_machine import GearTrain
@@ -145,19 +146,21 @@ class _Spreads:
 
     def __init__(self, loads: LoadSpread, alone: bool) -> None:
         self._loads, self._alone = loads, alone
-        self._found: dict[tuple[float, int], dict[str, Spread]] = {}
+        self._found: dict[tuple[float, int], MeshLoads | None] = {}
 
     def of(self, spectrum: TorqueSpectrum, mesh: str) -> list[Spread]:
         """Spread of a mesh in each class of a spectrum."""
-        rows = zip(spectrum.torques.tolist(), spectrum.hub, strict=True)
-        return [self.one(torque, hub, spectrum.width)[mesh] for torque, hub in rows]
+        rows = zip(
+            spectrum.torques.tolist(), spectrum.hub, spectrum.speeds(0.0).tolist(), strict=True
+        )
+        return [self.one(*row, spectrum.width)[mesh] for row in rows]
 
-    def one(self, torque: float, hub: Floats, width: float) -> dict[str, Spread]:
-        """Spread of all meshes in a class: under the torque and loads that asked for it first."""
+    def one(self, torque: float, hub: Floats, speed: float, width: float) -> dict[str, Spread]:
+        """Spread of all meshes in a class: by statics of what asked for it first."""
         key = (width, round(torque / width))
         if key not in self._found:
-            self._found[key] = self._loads.under(torque, np.zeros(6) if self._alone else hub)
-        return self._found[key]
+            self._found[key] = self._loads.statics(torque, np.zeros(6) if self._alone else hub)
+        return self._loads.spread(self._found[key], torque, speed)
 
 
 @dataclass(frozen=True)
@@ -225,7 +228,7 @@ class _Mesh:
         if speed > 0.0:
             seconds = 2.0 * np.pi * turns / speed
         once = TorqueSpectrum(abs(peak), np.array([peak]), seconds, turns, hub[None])
-        return self._damage(once, [self.fine.one(peak, hub, 1.0)[self.name]], factors=True)
+        return self._damage(once, [self.fine.one(peak, hub, speed, 1.0)[self.name]], factors=True)
 
 
 def _largest(one: FlankDamage) -> float:

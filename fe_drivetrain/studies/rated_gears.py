@@ -72,7 +72,13 @@ class GearRating:
         slices = self.asked.slices
         self.chosen = self._spread(rung, slices)
         self.coarse = self._spread(rung, (slices + 1) // 2)
-        return self.chosen.under(self.train.torque, self.given.hub)
+        return self._at_reference(self.chosen)
+
+    def _at_reference(self, loads: LoadSpread) -> dict[str, Spread]:
+        """Spread under the reference torque at the rated speed."""
+        application = {name: self.application(name, rated=True) for name in self.stresses}
+        speed = self.train.conditions.speed
+        return loads.under(self.train.torque, self.given.hub, speed, application)
 
     def ladder(self) -> tuple[tuple[LevelAnswer, ...], dict[str, Spread]]:
         """All levels at the reference torque, and the spread of the one that is rated.
@@ -87,7 +93,7 @@ class GearRating:
             for rung in self.train.rungs:
                 start, condensed = perf_counter(), condensed + rung.seconds
                 loads[rung.name] = self._spread(rung, self.asked.slices)
-                found[rung.name] = loads[rung.name].under(self.train.torque, self.given.hub)
+                found[rung.name] = self._at_reference(loads[rung.name])
                 seconds[rung.name] = perf_counter() - start + condensed
             self.coarse = self._spread(self.train.rung, (self.asked.slices + 1) // 2)
         self.chosen = loads[self.train.rung.name]
@@ -107,8 +113,8 @@ class GearRating:
     def mesh_answers(self, spreads: Mapping[str, Spread]) -> dict[str, MeshAnswer]:
         """Each mesh at the reference torque, with bands: fewer azimuths and slices, and bounds."""
         torque, found = self.train.torque, {}
-        coarse = self.coarse.under(torque, self.given.hub)
-        bounds = [one.under(torque, self.given.hub) for one in self.bounds or ()]
+        coarse = self._at_reference(self.coarse)
+        bounds = [self._at_reference(one) for one in self.bounds or ()]
         for name, spread in spreads.items():
             pairs = [(spread, one) for one in (coarse[name], *spread.halves)]
             if bounds:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
 
+from fe_drivetrain.bearing.operating_clearance import OperatingClearance
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.left_out import left_out
-from fe_drivetrain.drivetrain_file.mounted_bearings import unit_clearance
+from fe_drivetrain.drivetrain_file.mounted_bearings import row_clearance, unit_clearance
 from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.dynamics.bodies.catalogue_seats import catalogued
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.number_text import certain_value, formatted
@@ -31,7 +33,7 @@ from fe_drivetrain.studies.machine_description import (
     turning_parts,
     turning_tables,
 )
-from fe_drivetrain.studies.named_bearings import NamedBearing, named_bearings
+from fe_drivetrain.studies.named_bearings import NamedBearing, entry_of, named_bearings
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.scene_description import description
 from fe_drivetrain.studies.solved_assembly import checked_model
@@ -109,14 +111,16 @@ def check(
     if not isinstance(drivetrain, Scene):
         if turning is None:
             raise InputError(lacks)
-        return _lumped(drivetrain, turning, found, steps)
+        return _lumped(drivetrain, turning, found, steps, catalogues)
     scene = drivetrain
     named = named_bearings(scene, catalogues, {})
     misfits = [one.misfit for one in named.values()]
     for unused in catalogues_not_used(catalogues, {name: one.name for name, one in named.items()}):
         found.note(unused)
     found.about(scene)
-    clearances = _clearances(found, scene, named)
+    mounted = _clearances(found, scene, named)
+    mounted |= _in_gearbox(turning, catalogues, scene.bearing_names)
+    clearances = _clearance_table(found, mounted)
     model = checked_model(steps, scene)
     found.assume_all(left_out(scene))
     found.seed = None
@@ -144,9 +148,9 @@ def check(
 
 def _clearances(
     found: Findings, scene: Scene, named: Mapping[str, NamedBearing]
-) -> dict[str, list[Record]]:
-    """A table of operating clearances of bearings whose mounting is stated; notes on it."""
-    rows: list[Record] = []
+) -> dict[str, OperatingClearance]:
+    """Operating clearances of main bearings whose mounting is stated; notes on others."""
+    clearances: dict[str, OperatingClearance] = {}
     for name in (unit.bearing.name for unit in scene.bearing_units if unit.mounting is not None):
         if name not in named:
             found.note(
@@ -156,16 +160,52 @@ def _clearances(
             continue
         clearance = unit_clearance(scene, name, named[name].entry)
         assert clearance is not None
+        clearances[name] = clearance
+    return clearances
+
+
+def _in_gearbox(
+    turning: Turning | None, catalogues: Sequence[Path], main: Collection[str]
+) -> dict[str, OperatingClearance]:
+    """Operating clearances of all other bearings whose mounting is stated, as `life` takes them."""
+    rows = {} if turning is None else catalogued(turning.machine)
+    rows = {name: row for name, row in rows.items() if name not in main}
+    if not rows:
+        return {}
+    from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
+
+    known, clearances = read_bearing_catalogue(*catalogues), {}
+    for name, row in rows.items():
+        assert row.catalogue is not None
+        clearance = row_clearance(row, entry_of(name, row.catalogue, known))
+        if clearance is not None:
+            clearances[name] = clearance
+    return clearances
+
+
+def _clearance_table(
+    found: Findings, clearances: Mapping[str, OperatingClearance]
+) -> dict[str, list[Record]]:
+    """A table of operating clearances, with notes on them."""
+    rows: list[Record] = []
+    for name, clearance in clearances.items():
         rows += clearance_parts(name, clearance)
         state_clearance(found, name, clearance)
     return {"From initial to operating clearance, radial, of the diameter": rows} if rows else {}
 
 
-def _lumped(drivetrain: Drivetrain, turning: Turning, found: Findings, steps: Steps) -> CheckResult:
+def _lumped(
+    drivetrain: Drivetrain,
+    turning: Turning,
+    found: Findings,
+    steps: Steps,
+    catalogues: Sequence[Path],
+) -> CheckResult:
     """Check a drivetrain whose main shaft has no sections: all that turns, and nothing else."""
     found.about(drivetrain)
     found.seed = None
     machine = turning.machine
+    clearances = _clearance_table(found, _in_gearbox(turning, catalogues, ()))
     missing = ", ".join(machine.not_given)
     levels = ", ".join(turning.degrees)
     found.say(f"{drivetrain.title}: {ratio_in_words(machine)}. Levels: {levels}.")
@@ -187,11 +227,11 @@ def _lumped(drivetrain: Drivetrain, turning: Turning, found: Findings, steps: St
     )
     return CheckResult(
         parts={},
-        described=turning_tables(turning),
+        described=turning_tables(turning) | clearances,
         costs=(),
         model=None,
         turning=turning,
-        **found.frozen(steps.times, catalogues=[]),
+        **found.frozen(steps.times, catalogues=[path.name for path in catalogues]),
     )
 
 

@@ -30,6 +30,7 @@ from fe_drivetrain.studies.strength_loading import StrengthLoading
 from fe_drivetrain.studies.strength_options import HOURS, StrengthOptions
 from fe_drivetrain.studies.strength_sections import StrengthShaft, stated_strength, strength_shaft
 from fe_drivetrain.studies.strength_sums import StrengthSums, class_sums, file_sums
+from fe_drivetrain.studies.torque_classes import Rows, torque_classes
 from fe_drivetrain.turbine_loads.histories.sites import (
     HOURS_A_YEAR,
     Site,
@@ -179,6 +180,8 @@ def checked(scene: Drivetrain, options: StrengthOptions, loading: StrengthLoadin
     stated_strength(scene)
     loading.check(options)
     loading.wrench()
+    if loading.spectrum is not None:
+        torque_classes(loading.spectrum, _rated_speed(options, scene))
     return scene
 
 
@@ -197,40 +200,25 @@ def _parts(
         ]
         return list(mapped(file_sums, items, len(items) if len(items) >= _MANY else 1, report))
     wrench = loading.wrench()
-    rows = loading.spectrum
+    rows: Rows | None = loading.spectrum
     if rows is None:
         speed = _with_speed(options, scene).rotor_speed_rpm or 0.0
         hours = HOURS if options.hours is None else options.hours
         rows = [(wrench[3], hours, speed * np.pi / 30.0)]
     found = []
-    for row in rows:
-        torque, hours, speed = _class_of(row, options, scene)
+    for torque, hours, speed in torque_classes(rows, _rated_speed(options, scene)):
         loads = wrench.copy()
         loads[3] = torque
         seconds = 3600.0 * hours
-        turns = abs(speed) * seconds / (2.0 * np.pi)
+        turns = speed * seconds / (2.0 * np.pi)
         found.append(class_sums(shaft.model, _entered(scene, loads), turns, seconds))
     return found
 
 
-def _class_of(
-    row: Sequence[float], options: StrengthOptions, scene: Scene
-) -> tuple[float, float, float]:
-    """Torque [N m], hours and speed [rad/s] of a class."""
-    if len(row) not in (2, 3) or not np.isfinite(row).all() or row[1] < 0.0:
-        raise InputError(
-            f"a class of the spectrum is {list(row)}: give its torque in N m, its hours, at least "
-            "0, and its speed in rad/s"
-        )
-    if len(row) == 3:
-        return float(row[0]), float(row[1]), float(row[2])
-    speed = _with_speed(options, scene).rotor_speed_rpm
-    if speed is None:
-        raise InputError(
-            "strength: no speed of the rotor is known, by which a spectrum counts turns: give "
-            "operation.rotor_speed, or a speed of each class"
-        )
-    return float(row[0]), float(row[1]), speed * np.pi / 30.0
+def _rated_speed(options: StrengthOptions, scene: Scene) -> float | None:
+    """Rated speed of the rotor [rad/s], as asked for or of the file."""
+    rpm = _with_speed(options, scene).rotor_speed_rpm
+    return None if rpm is None else rpm * np.pi / 30.0
 
 
 def _entered(scene: Scene, wrench: Floats) -> Floats:

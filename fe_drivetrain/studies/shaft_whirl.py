@@ -32,6 +32,7 @@ from fe_drivetrain.dynamics.whirl.unbalance import UnbalanceResponse, unbalance_
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.rotor_speeds import FARTHEST, check_speed
 from fe_drivetrain.studies.whirl_charts import whirl_campbell
 from fe_drivetrain.studies.whirl_findings import state_rollers, state_whirl
 from fe_drivetrain.studies.whirl_record import Rung, ShaftWhirl, excited_critical
@@ -196,6 +197,7 @@ def _speeds(drivetrain: Drivetrain, speeds: tuple[float, float] | None) -> tuple
             f"speeds of the rotor are {over[0]:g} to {over[1]:g} rad/s but the least must be from "
             "0 and the largest not below it: change them"
         )
+    check_speed("range of operation", over[1], own and own[1], FARTHEST, "change it")
     return over
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.components import FORCES, LARGEST_LOAD
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.studies.strength_options import StrengthOptions
 from fe_drivetrain.turbine_loads.histories.sites import Site
@@ -93,10 +93,10 @@ class StrengthLoading:
                 raise InputError(
                     f"strength: {name!r} is no load of the hub: use {', '.join(FORCES)}"
                 )
-            if not abs(float(value)) < 1e12:
+            if not abs(float(value)) < LARGEST_LOAD:
                 raise InputError(
-                    f"strength: {name} of the hub is {value:g} N or N m but must be below 1e12: "
-                    "correct it"
+                    f"strength: {name} of the hub is {value:g} N or N m but must be below "
+                    f"{LARGEST_LOAD:g}: correct it"
                 )
             found[FORCES.index(name)] = float(value)
         return found

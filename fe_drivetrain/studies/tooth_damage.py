@@ -214,10 +214,11 @@ def gear_damage(
     half : int or None
         Every other azimuth alone, from the first (0) or the second (1); None takes all.
     """
-    classes = [
-        loads.under(torque, hub)
-        for torque, hub in zip(spectrum.torques.tolist(), spectrum.hub, strict=True)
-    ]
+    rated = next((one.conditions.speed for one in stresses.values()), None) or 0.0
+    rows = zip(
+        spectrum.torques.tolist(), spectrum.hub, spectrum.speeds(rated).tolist(), strict=True
+    )
+    classes = [loads.under(torque, hub, speed, application) for torque, hub, speed in rows]
     found: dict[str, FlankDamage] = {}
     for name, one in stresses.items():
         spreads = [each[name] if half is None else each[name].halves[half] for each in classes]

@@ -21,6 +21,7 @@ from fe_drivetrain.bearing.fitted_rollers import RATED, fitted_rollers, lattice
 from fe_drivetrain.bearing.rating import ball_dynamic_rating, ratings
 from fe_drivetrain.bearing_life.life.rated import page_factors, rated_entry
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.strict_yaml import PlainLoader
 
 ROOT = Path(__file__).parents[2]
 SPHERICAL: dict[str, Any] = {
@@ -244,3 +245,17 @@ def test_a_known_inside_keeps_its_rollers_and_takes_the_factors_of_its_page(
     assert (rated.dynamic, rated.static) == (9.3e5, 1.2e6)
     assert rated.pitch_diameter == pytest.approx(0.225)
     assert fitted_entry(page_of(CYLINDRICAL)).fitted
+
+
+def test_a_designation_of_digits_alone_needs_no_quotes() -> None:
+    loaded = yaml.load("{designation: 6309, C: 5.53e+4, C0: 3.15e+4}", PlainLoader)
+    assert page_of(loaded).designation == "6309"
+    with pytest.raises(InputError, match="a truth value has no meaning"):
+        page_of(BALLS, designation=True)
+
+
+def test_ranges_of_ratings_are_told_in_newtons() -> None:
+    with pytest.raises(InputError, match=r"must be 2.833e\+05 to 3.4e\+06 N, C0 of 1.7e\+07 N"):
+        page_of(SPHERICAL, Cu=1e5)
+    with pytest.raises(InputError, match=r"C0 is 1e\+06 N but must be 2.445e\+06 to 4.075e\+07 N"):
+        page_of(SPHERICAL, C0=1e6)

@@ -9,6 +9,8 @@ import pytest
 from pydantic import ValidationError
 
 from fe_drivetrain.bearing import catalogue_entry, forces
+from fe_drivetrain.bearing.catalogue import fitted_entry
+from fe_drivetrain.bearing.catalogue_page import CataloguePage
 from fe_drivetrain.bearing.entry_clearance import entry_clearance, normal_of
 from fe_drivetrain.bearing.mounting import Fit, Mounting, Temperatures
 from fe_drivetrain.bearing.operating_clearance import (
@@ -21,6 +23,8 @@ from fe_drivetrain.bearing.operating_clearance import (
 from fe_drivetrain.bearing.press_fits import Ring, RingMaterial, fit_pressure
 from fe_drivetrain.bearing.tolerances import Limits
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.studies.clearance_tables import state_clearance
 
 STEEL = RingMaterial(206e9, 0.3, 7850.0, 12e-6)
 SEATS = Seats(
@@ -223,3 +227,31 @@ def test_what_a_bearing_cannot_have_is_refused() -> None:
     with pytest.raises(InputError, match="has no wall"):
         Ring(0.2, 0.1, STEEL)
     assert Ring(0.1, inf, STEEL).bore_growth(1e6) == pytest.approx(1e6 * 0.1 / 206e9 * 1.3)
+
+
+@pytest.mark.parametrize(
+    ("name", "shaft", "growth"),
+    [
+        ("single_row_tapered", 70.0, 12.5e-6 * (50.0 - 30.0)),
+        ("single_row_tapered", 50.0, 0.0),
+        ("cylindrical", 70.0, 0.0),  # carries no axial force, so that it is none of a pair
+    ],
+)
+def test_growth_between_a_pair_is_named_where_it_is_left_out(
+    name: str, shaft: float, growth: float
+) -> None:
+    """alpha (dT of the shaft - dT of the housing) for each metre between both bearings."""
+    designation = {"single_row_tapered": "32222", "cylindrical": "NU 2220"}[name]
+    more = {"C": 4.02e5, "C0": 5.7e5, "Y": 1.4} if designation == "32222" else {}
+    page = CataloguePage.read({"designation": designation, "C": 3.8e5, "C0": 4.5e5, **more}, "page")
+    temperatures = Temperatures(inner_ring=65, outer_ring=50, shaft=shaft, housing=50)
+    mounting = Mounting(mounted_clearance=(1e-5, 3e-5), temperatures=temperatures)
+    found = entry_clearance(fitted_entry(page), mounting)
+    assert found.left_out == pytest.approx(growth, abs=1e-15)
+    said = Findings()
+    state_clearance(said, "front", found)
+    notes = [note for note in said.notes if "as one of a pair" in note]
+    assert len(notes) == bool(growth)
+    if notes:
+        assert "grows 250 µm more than its housing for each metre" in notes[0]
+        assert "less axial clearance of both together face to face (X)" in notes[0]

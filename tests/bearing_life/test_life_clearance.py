@@ -5,9 +5,10 @@ from pathlib import Path
 import pytest
 from hub_load_tables import openfast_text
 
-from fe_drivetrain.drivetrain_file import Scene, library_scene
+from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file import Scene, library_scene, read_drivetrain
 from fe_drivetrain.drivetrain_file.mounted_bearings import unit_clearance
-from fe_drivetrain.studies import life
+from fe_drivetrain.studies import check, life
 from fe_drivetrain.studies.bearing_lives import LifeResult
 from fe_drivetrain.studies.life_options import LifeOptions
 
@@ -90,3 +91,29 @@ def test_seats_of_the_scene_are_those_of_the_fit() -> None:
     assert found is not None
     assert stated.radial == found.radial
     assert not any("solid shaft" in text for text in found.assumed)
+
+
+HOT = {"temperatures": {"inner_ring": 250, "outer_ring": -60}}
+
+
+@pytest.mark.parametrize(
+    ("more", "key"),
+    [
+        (HOT, r"mounting\.temperatures makes -2\.34 mm"),
+        ({"speed": 1500}, r"mounting\.speed makes -3\.07\d? mm"),
+        ({"internal_clearance": [4e-3, 5e-3]}, r"mounting\.internal_clearance makes \+5 mm"),
+    ],
+)
+def test_check_refuses_the_clearance_that_life_refuses(
+    more: dict[str, object], key: str, history: Path
+) -> None:
+    scene = mounted(**{**MOUNTING, **more})
+    for study in (check, lambda one: life(one, history, options=LifeOptions(only="rear"))):
+        with pytest.raises(InputError, match=f"bearing 'rear': radial clearance .*{key} of it"):
+            study(scene)
+
+
+def test_check_refuses_it_of_the_gearbox_too() -> None:
+    base = {"gearbox.stages.0.pins.0.mounting": {"clearance_class": "C3", "speed": 1e4}}
+    with pytest.raises(InputError, match="bearing 'upwind': radial clearance in operation is -"):
+        check(read_drivetrain("nrel_5mw", base))

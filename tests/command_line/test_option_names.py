@@ -2,6 +2,8 @@
 
 import ast
 import re
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from inspect import signature
@@ -239,3 +241,18 @@ def test_every_argument_that_is_named_exists_and_has_an_option() -> None:
         assert field in OPTIONS or any(field == key for key, _ in WORDS), name
         if owner:
             assert field in signature(OWNERS[owner]).parameters, name
+
+
+def test_an_unknown_quantity_is_refused_before_what_computes_it_is_loaded(tmp_path: Path) -> None:
+    program = (
+        "import atexit, sys\n"
+        "from fe_drivetrain.command_line import main\n"
+        "studies = lambda: {m.rpartition('.')[2] for m in sys.modules if '.studies.' in m}\n"
+        "known = lambda: print({'turning_quantities', 'level_advice'} & studies())\n"
+        "atexit.register(known)\n"
+        f"main(['advise', 'two_bearings', '--quantity', 'frnt.Fz', '--out', {str(tmp_path)!r}])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert "'frnt.Fz' is unknown: did you mean 'front.Fz'" in done.stderr
+    assert done.stdout == "set()\n"

@@ -8,17 +8,29 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
+from faulty_cases import fill
 from numba import njit
 from tiny_case import Result
 
 from fe_drivetrain.command_line import terminal
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.stopped import STOPPED, TERMINATED, causes, stop_status, until_stopped
+from fe_drivetrain.common.stopped import (
+    EARLIER,
+    NOTHING,
+    STOPPED,
+    TERMINATED,
+    causes,
+    stop_status,
+    until_stopped,
+)
 from fe_drivetrain.common.threads import CORES_VARIABLE
+from fe_drivetrain.report.suite.case import Case
 from fe_drivetrain.report.suite.page import Page
+from fe_drivetrain.report.suite.result_folders import run_case
 from fe_drivetrain.report.suite.run import Run
 
 
@@ -109,7 +121,7 @@ def test_ctrl_c_on_the_way_out_of_compiled_code_is_no_traceback(
         assert terminal.guarded(work) == STOPPED
         thread.join()
     err = capsys.readouterr().err
-    assert err == 10 * f"fe-drivetrain: stopped; {terminal.KEPT}\n"
+    assert err == 10 * f"fe-drivetrain: stopped; {NOTHING}\n"
 
 
 def test_a_stop_within_one_of_several_cases_stops_all(
@@ -147,3 +159,26 @@ def test_ctrl_c_before_a_command_begins_is_no_traceback() -> None:
         process.send_signal(signal.SIGINT)
         _, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (STOPPED, "")
+
+
+def test_results_of_an_earlier_run_are_named_where_there_are_any(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stops = [True, False, True]
+
+    def work(run: Run, page: Page) -> None:
+        if stops.pop():
+            raise KeyboardInterrupt
+        fill(run, page)
+
+    case = Case("a/b", "t", "s", work)
+
+    def run_it() -> int:
+        run_case(case, tmp_path / "out")
+        return 0
+
+    said = []
+    while stops:
+        terminal.guarded(run_it)
+        said.append(capsys.readouterr().err.rpartition("stopped; ")[2].strip())
+    assert said == [NOTHING, "", EARLIER]

@@ -1,6 +1,7 @@
 """Scenes from YAML: what is read, what is refused, and that a file cannot do anything."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -64,7 +65,7 @@ def test_round_trip_through_a_change():
         ({"shaft.sections.0.length": 0}, "length.* 0"),
         ({"shaft.sections.0.inner_diameter": 0.4}, "inner"),
         ({"shaft.sections.0.inner_diameter": 0.5}, "inner"),
-        ({"shaft.colour": "red"}, "Shaft: unknown key 'colour': use one of name, front, sections"),
+        ({"shaft.colour": "red"}, "shaft: unknown key 'colour': use one of name, front, sections"),
         ({"colour": "red"}, "unknown key 'colour'.*gearbox"),
         ({"shaft.material": "cheese"}, "material 'cheese' of shaft is unknown: use one of steel"),
         ({"bearing_units.0.housing.material": "chees"}, "'chees' of main_bearing.housing"),
@@ -107,7 +108,7 @@ def test_round_trip_through_a_change():
         ),
         (
             {"bearing_units.0.housing.wall": -0.1},
-            "bearing unit 'main_bearing': Housing: wall is -0.1 but must be at least",
+            "bearing unit 'main_bearing': housing: wall is -0.1 but must be at least",
         ),
         (
             {"bearing_units.0.housing.wall": 150},
@@ -124,6 +125,14 @@ def test_round_trip_through_a_change():
         (
             {"bearing_units.frnt.housing.wall": 0.1},
             "there is no 'frnt'; there are main_bearing, or by number 0 to 0: use a key",
+        ),
+        (
+            {"bearing_units.0.mounting": {"clearance_class": "C3", "fit": {"shaft": "much6"}}},
+            r"mounting.fit.shaft is 'much6'",
+        ),
+        (
+            {"bearing_units.0.catalogue": {"designation": 6309.5, "C": 1e5, "C0": 1e5}},
+            "designation is 6309.5 but must be a text, in quotes where it looks like a number",
         ),
         ({"hub.loads_at": 50}, "hub.loads_at is 50 m but must be from -11 to 9 m, at most 5 len"),
         ({"hub.loads_at": -11.5}, "hub.loads_at is -11.5 m but must be from -11 to 9 m"),
@@ -265,3 +274,18 @@ def test_what_is_changed_in_one_reading_of_a_text_is_not_in_the_next() -> None:
     first = parse_mapping("a: {b: [1, 2]}", "text")
     first["a"]["b"].append(3)
     assert parse_mapping("a: {b: [1, 2]}", "text") == {"a": {"b": [1, 2]}}
+
+
+def test_messages_have_no_names_of_classes_or_of_pydantics_unions() -> None:
+    scene = library_scene("two_bearings")
+    for changes in (
+        {"strength": {"tensile_strength": -1.0, "yield_strength": 1.0}},
+        {"bearing_units.0.mounting": {"clearance_class": "C3", "fit": {"shaft": "much6"}}},
+        {"bearing_units.0.mounting": {"clearance_class": "C3", "fit": {"shaft": [1, 2]}}},
+        {"bearing_units.0.catalogue": {"designation": [1]}},
+        {"uncertainty": {"shaft.front": {"unifrm": 0.1}}},
+    ):
+        with pytest.raises(InputError) as caught:
+            change_scene(scene, changes)
+        message = str(caught.value)
+        assert not re.search(r"constrained|tuple\[|ShaftStrength|CataloguePage|Spread", message)

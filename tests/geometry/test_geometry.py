@@ -303,7 +303,7 @@ def stepped(fillet, next_length=0.5, last_fillet=0.0):
 @pytest.mark.parametrize(
     ("attempt", "words"),
     [
-        (lambda: section(length=0), "Section: length is 0 but must be at least 1e-06"),
+        (lambda: section(length=0), "section: length is 0 but must be at least 1e-06"),
         (lambda: section(length=-1), "length is -1"),
         (lambda: section(length=math.nan), "length is nan"),
         (lambda: section(length="long"), "length is 'long'"),
@@ -318,13 +318,13 @@ def stepped(fillet, next_length=0.5, last_fillet=0.0):
         (lambda: section(diameter=1), "unknown key 'diameter'"),
         (
             lambda: Section(length=1),
-            "Section: outer_diameter (outer diameter at the front, m) is missing",
+            "section: outer_diameter (outer diameter at the front, m) is missing",
         ),
         (lambda: Shaft(front=0, sections=()), "sections"),
         (lambda: Shaft(front=math.inf, sections=(section(),)), "front is inf"),
         (
             lambda: Shaft(front=0, sections=[{"length": 1, "outer_diameter": 0.4}, {"length": 1}]),
-            "shaft section 2: Section: outer_diameter (outer diameter at the front, m) is missing",
+            "shaft section 2: outer_diameter (outer diameter at the front, m) is missing",
         ),
         (lambda: stepped(0.06), "fillet is 0.06 m but must be at most 0.05 m"),
         (lambda: stepped(0.05, next_length=0.04), "needs 0.05 m of a section 0.04 m long"),

@@ -1,20 +1,24 @@
 """Defect frequencies of bearings: kinematic identities, published numbers, planets."""
 
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fe_drivetrain.bearing import BallRow, ball_row, cylindrical, spherical_roller
 from fe_drivetrain.bearing.defect_frequencies import defect_frequencies
 from fe_drivetrain.bearing.geometry import Row, count
+from fe_drivetrain.drivetrain_file import read_drivetrain
 from fe_drivetrain.dynamics import Level, machine_system, system_modes
 from fe_drivetrain.dynamics.bodies.bearing_reactions import BearingModel
-from fe_drivetrain.dynamics.bodies.machine import library_machine
+from fe_drivetrain.dynamics.bodies.machine import library_machine, machine_of
 from fe_drivetrain.procedure import bearing_defects
 from fe_drivetrain.procedure.bearing_defects import ring_speeds
+from fe_drivetrain.studies import modes
 
 TURN = 2.0 * pi
 INCH = 0.0254
@@ -102,3 +106,39 @@ def test_defects_act_at_springs_of_their_bearing_and_planets_together() -> None:
     planet = by_name["stage 1 pin upwind"]
     assert 0.5 < planet.per_turn.cage / planet.speed_ratio < 1.0
     assert by_name["HSS-A"].per_turn.cage / by_name["HSS-A"].speed_ratio < 0.5
+
+
+PAGE = {"designation": "NU 2220", "C": 3.8e5, "C0": 4.5e5, "Cu": 5.4e4}
+
+
+def test_defects_of_a_page_have_the_range_of_all_insides_that_fit_it() -> None:
+    """More elements are known of one page, so that its range is a part of the other's."""
+    spans = []
+    for page in (PAGE, {**PAGE, "elements": 18}):
+        machine = machine_of(read_drivetrain("nrel_5mw", {"gearbox.bearings.2.catalogue": page}))
+        (own,) = (one for one in bearing_defects(machine)[0] if one.entry == "NU 2220")
+        for kind, value in own.per_turn.by_name().items():
+            low, high = own.ends(kind) or (0.0, 0.0)
+            assert 0.0 < low <= value <= high
+        low, high = own.ends("BPFO") or (0.0, 0.0)
+        assert own.per_turn.outer + own.per_turn.inner == pytest.approx(
+            own.elements * own.speed_ratio
+        )
+        spans.append(high / low)
+    assert 1.0 < spans[1] < spans[0]
+    known = bearing_defects(library_machine("grc_750kw"))[0]
+    assert all(one.ends("BPFO") is None for one in known)
+
+
+def test_modes_take_defects_of_catalogues_of_the_user(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(yaml.safe_dump({"mine": PAGE}))
+    drivetrain = read_drivetrain("nrel_5mw", {"gearbox.bearings.2.catalogue": "mine"})
+    without = modes(drivetrain, level="torsional")
+    found = modes(drivetrain, level="torsional", catalogues=[file])
+    assert "mine" not in {one.entry for one in without.bearing_defects}
+    assert "mine" in {one.entry for one in found.bearing_defects}
+    rows = {row["catalogue entry"]: row for row in found.tables["bearing defects"]}
+    assert rows["mine"]["BPFO in a turn, least of all insides"] is not None
+    assert rows["nrel_5mw_planet"]["BPFO in a turn, least of all insides"] is None
+    assert any("does not print what is inside" in note for note in found.notes)

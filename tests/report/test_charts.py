@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from fe_drivetrain.plots.figures import error_traces
 from fe_drivetrain.plots.style import styled
-from fe_drivetrain.report.charts import chart, trace
+from fe_drivetrain.report.charts import bars, chart, trace
 from fe_drivetrain.report.number_text import (
     computed_text,
     error_text,
@@ -136,3 +136,14 @@ def test_what_was_given_keeps_its_digits_and_what_was_computed_does_not() -> Non
     assert error_text(failing) == "+3.2\u00a0%"  # what fails says by how much
     off = judge("f", 720.0, 727.02, band=0.5, **given)
     assert error_text(off) == "\u22120.966\u00a0%"
+
+
+def test_a_logarithmic_axis_has_dots_and_no_bars() -> None:
+    """A bar's length is from zero, which such an axis does not have."""
+    groups = {"L10r": {"front": 2.0, "rear": 30.0}, "L10mr": {"front": 5.0}}
+    plain = bars("lives", groups, "life [years]").figure["data"]
+    dots = bars("lives", groups, "life [years]", least=1.0).figure
+    assert {one["type"] for one in plain} == {"bar"}
+    assert {(one["type"], one["mode"]) for one in dots["data"]} == {("scatter", "markers")}
+    assert dots["layout"]["xaxis"]["type"] == "log"
+    assert len({one["marker"]["symbol"] for one in dots["data"]}) == 2

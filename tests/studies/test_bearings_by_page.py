@@ -7,7 +7,12 @@ from typing import Any
 
 import pytest
 
+from fe_drivetrain.bearing.catalogue import fitted_entry
 from fe_drivetrain.bearing.catalogue_page import CataloguePage
+from fe_drivetrain.bearing.fitted_rollers import fitted_rollers
+from fe_drivetrain.bearing.geometry import RollerRow
+from fe_drivetrain.bearing_life.life.rated import rated_from_catalogue
+from fe_drivetrain.bearing_life.life.roller_models import rigid_rings
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import changed
 from fe_drivetrain.drivetrain_file.reading import library_scene
@@ -15,7 +20,9 @@ from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.drivetrain_file.turning_parts import BearingData
 from fe_drivetrain.dynamics.bodies.catalogue_seats import bearing_of
 from fe_drivetrain.studies.bearing_lives import LifeResult, life
+from fe_drivetrain.studies.life_inside import insides_of
 from fe_drivetrain.studies.life_options import LifeOptions
+from fe_drivetrain.studies.rolling_bearings import OneBearing
 from fe_drivetrain.turbine_loads.hub_loads.csv_table import write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.surrogate import Condition, hub_load_set
 
@@ -106,3 +113,22 @@ def test_bearing_of_a_gearbox_takes_a_page_with_the_clearance_of_its_row() -> No
     found = bearing_of(row)
     assert found.name == "NU 2220"
     assert [one.clearance for one in found.rows] == [4e-5]
+
+
+def test_each_inside_has_the_clearance_and_profile_of_its_own() -> None:
+    page = CataloguePage.read(
+        {"designation": "NU 2220", "C": 3.8e5, "C0": 4.5e5, "Cu": 5.4e4}, "page"
+    )
+    rated = rated_from_catalogue(page, clearance=3e-5)
+    nowhere: Any = None
+    one = OneBearing("x", "x", fitted_entry(page), rated, nowhere, None, rigid_rings)
+    fitted = fitted_rollers(page)
+    insides = insides_of(one, profiled=True)
+    assert len(insides) == len(fitted)
+    for k, inside in enumerate(insides):
+        (row,) = inside.rows
+        assert isinstance(row, RollerRow)
+        assert row.clearance == 3e-5
+        assert row.crown / row.diameter == pytest.approx(3.5e-4 * fitted.crown[k], rel=1e-12)
+    straight = [inside.rows[0] for inside in insides_of(one, profiled=False)]
+    assert {row.crown for row in straight if isinstance(row, RollerRow)} == {0.0}

@@ -288,6 +288,15 @@ def test_units_of_limits() -> None:
             ["--minimise", "masss", "--vary", "shaft.front=-1:-0.9", "--limit", "mass<=1 t"],
             "quantity 'masss' is unknown",
         ),
+        (
+            ["--minimise", "mass", "--vary", "shaft.frnt=-1:-0.9", "--limit", "mass<=1 t"],
+            "design variable 'shaft.frnt': the scene has no number there: did you mean 'shaft.",
+        ),
+        (
+            ["--minimise", "mass", "--vary", "shaft.materal=steel", "--limit", "mass<=1 t"],
+            "design variable 'shaft.materal': the drivetrain has no such key: did you mean "
+            "'shaft.material'",
+        ),
     ],
 )
 def test_what_is_wrong_is_said(
@@ -318,3 +327,21 @@ def test_the_command_finds_and_writes_the_design(
     assert said["schema"].startswith("fe-drivetrain/search/")
     (row,) = said["tables"]["design"]
     assert 0.02 <= row["found"] <= 0.47
+
+
+def test_a_limit_without_a_unit_shows_the_one_that_it_took() -> None:
+    asked = DesignQuantities(
+        _stepped(), design_request(BORES, "mass", ["stress<=1e8", "mass.shaft<=2 t"], load=LOAD)
+    )
+    assert [str(one) for one in asked.request.limits] == ["stress<=1e+08 Pa", "mass.shaft<=2 t"]
+
+
+def test_lists_that_keep_no_limit_are_to_be_given_more_values() -> None:
+    vary = {"shaft.sections.0.inner_diameter": [0.1, 0.2, 0.3]}
+    request = design_request(vary, "mass", ["deflection<=0.001 mm"], load=LOAD)
+    with pytest.raises(InputError) as caught:
+        search(_stepped(), request, starts=1)
+    message = str(caught.value)
+    assert "is kept by no design listed" in message
+    assert message.endswith("relax it, or add values to the lists")
+    assert "inner_diameter=0.1," in message  # the stiffest comes nearest

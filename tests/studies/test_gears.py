@@ -15,8 +15,17 @@ from fe_drivetrain.cases.references.rated_gears import rated_meshes
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.dynamics.bodies.levels import Level
+from fe_drivetrain.dynamics.bodies.machine import machine_of
+from fe_drivetrain.dynamics.bodies.mesh_loads import MeshResponses
+from fe_drivetrain.gear.load_factors import LoadFactors, face_factor, resonance_speed
+from fe_drivetrain.studies.gear_levels import Spread
+from fe_drivetrain.studies.gear_machine import gear_train
+from fe_drivetrain.studies.gear_meshes import gear_meshes
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_ratings import GearsResult, gears
+from fe_drivetrain.studies.gear_stresses import MeshStresses
+from fe_drivetrain.studies.torque_classes import torque_classes
 from fe_drivetrain.turbine_loads.histories.sites import Site
 
 SMALL = """\
@@ -365,6 +374,7 @@ def test_the_command_writes_a_page_and_tables(
         (("--load", "hub.Mx=1"), "--load 'hub.Mx' is unknown"),
         (("--lubricant", "thick"), "--lubricant thick: give a grade"),
         (("--spectrum", "none.csv"), "none.csv"),
+        (("--spectrum", "backwards.csv"), "has a speed of -12 1/min but must have one from 0 to"),
         (("--loads", "none.csv"), "none.csv"),
     ],
 )
@@ -377,6 +387,8 @@ def test_a_mistake_ends_with_one_sentence_and_leaves_nothing(
 ) -> None:
     file = _file(tmp_path)
     monkeypatch.chdir(tmp_path)
+    table = "torque [kNm],time [h],rotor speed [rpm]\n200,100,-12\n"
+    (tmp_path / "backwards.csv").write_text(table)
     status, _, error = invoke("gears", str(file), *words, "--out", "found")
     assert status == 2
     assert sentence in error
@@ -409,3 +421,99 @@ def test_arguments_that_contradict_each_other_are_refused(small: Drivetrain) -> 
         gears(small, spectrum=[(1e5, -1.0)])
     with pytest.raises(InputError, match="lasts 0 h"):
         gears(small, spectrum=[(1e5, 0.0)])
+
+
+BY_FORMULA = {
+    f"gearbox.stages.{k}.strength.{key}": None for k in range(3) for key in ("face_load", "dynamic")
+}
+"""The NREL 5 MW gears with K_Hbeta and K_v by their accuracy grade."""
+
+
+@pytest.mark.parametrize("application", [1.0, 1.25])
+@pytest.mark.parametrize("share", [0.05, 0.5, 1.0])
+def test_a_turning_gear_without_torque_is_not_stressed_more(
+    share: float, application: float
+) -> None:
+    """K_v and K_Hbeta grow without bound as the torque falls; the stress falls all the same.
+
+    Up to 0.5 times its resonance at any torque a gear is in one range of K_v, which jumps between
+    ranges.
+    """
+    drivetrain = read_drivetrain("nrel_5mw", BY_FORMULA)
+    train = gear_train(drivetrain, GearOptions(), None)
+    meshes, _ = gear_meshes(train.machine, train.strengths)
+    assert train.conditions.speed is not None
+    speed = share * train.conditions.speed
+    torques = train.torque * np.geomspace(1e-6, 2.0, 120)
+    for mesh in meshes.values():
+        own = MeshStresses(mesh, train.conditions)
+        teeth = abs(mesh.pair.first.teeth)
+        first = resonance_speed(mesh.stiffness.mesh, mesh.mass, teeth)
+        assert speed * mesh.speed_ratio < 0.5 * first
+        stresses = []
+        for torque in torques.tolist():
+            sharing, face = own.formula(torque, speed, application)
+            start = LoadFactors(application, sharing, 1.0, face)
+            stresses.append(own.contact(torque, own.factors(torque, speed, start).contact))
+        assert (np.diff(np.array(stresses)[:, 0]) > 0.0).all(), mesh.name
+
+
+def test_the_face_load_factor_is_that_of_all_load_factors_before_it() -> None:
+    """F_m = F_t K_A K_gamma K_v, by hand from the factors of the answer."""
+    drivetrain = read_drivetrain("nrel_5mw", BY_FORMULA)
+    found = gears(drivetrain, options=GearOptions(**{**FEW, "level": "torsional"}))
+    train = gear_train(drivetrain, GearOptions(), None)
+    meshes, _ = gear_meshes(train.machine, train.strengths)
+    for name, mesh in meshes.items():
+        answer, K = found.meshes[name], found.meshes[name].factors
+        assert mesh.deviations is not None
+        load = answer.force * K.K_A * K.K_gamma * K.K_v / mesh.pair.face_width
+        exact = face_factor(mesh.deviations[2], mesh.stiffness.misaligned, load)
+        assert K.K_v > 1.0
+        assert K.K_Hbeta == pytest.approx(exact, rel=1e-12)
+
+
+def test_a_planet_that_hardly_carries_makes_no_face_load_factor() -> None:
+    """K_gamma K_Hbeta is the largest load of any place, over the mean of all planets."""
+    share = np.array([[1.9, 1.0, 0.1]])
+    face = np.array([[[1.2, 0.8], [1.0, 1.0], [1.9, 0.1]]])
+    spread = Spread(np.zeros(1), share, face)
+    assert spread.sharing * spread.face_load == pytest.approx(1.9 * 1.2)
+
+
+@pytest.mark.parametrize(
+    ("row", "sentence"),
+    [
+        ((2e5, 1.0, -2.0), "speed of -19.1 1/min but must have one from 0 to 38.2 1/min"),
+        ((2e5, 1.0, 20.0), "speed of 191 1/min but must have one from 0 to 38.2 1/min"),
+        ((1e13, 1.0), "torque of 1e\\+13 N m but must be below 1e\\+12 N m"),
+    ],
+)
+def test_classes_of_a_spectrum_are_within_reach_of_the_rotor(
+    small: Drivetrain, row: tuple[float, ...], sentence: str
+) -> None:
+    with pytest.raises(InputError, match=f"class 2 of the torque spectrum has a {sentence}"):
+        gears(small, spectrum=[(2e5, 1.0, 3.9), row])
+
+
+def test_without_a_rated_speed_a_spectrum_states_speeds_that_are_not_negative() -> None:
+    with pytest.raises(
+        InputError, match=r"of -1\.91 1/min but must have one from 0 to 954.9 1/min"
+    ):
+        torque_classes([(2e5, 1.0, -0.2)], None)
+    with pytest.raises(InputError, match="no speed of the rotor is known"):
+        torque_classes([(2e5, 1.0)], None)
+    assert torque_classes([(-2e5, 1.0, 0.3)], None) == [(-2e5, 1.0, 0.3)]
+
+
+@pytest.mark.parametrize("key", ["gearbox.stages.2.stiffness", "gearbox.stages.0.ring_planet"])
+def test_the_stiffest_that_a_file_may_state_is_as_good_as_rigid(key: str) -> None:
+    """Beyond it statics would take other springs for none, and said that something moves freely."""
+    with pytest.raises(InputError, match="1e\\+20 but must be at most 1e\\+16"):
+        read_drivetrain("nrel_5mw", {key: 1e20})
+    sums = []
+    for stiffness in (1e13, 1e16):
+        machine = machine_of(read_drivetrain("nrel_5mw", {key: stiffness}))
+        loads = MeshResponses(machine, Level.FLEXIBLE, 1, 3).under(4e6)
+        sums.append([one.sum() for one in loads.slices.values()])
+    np.testing.assert_allclose(sums[1], sums[0], rtol=3e-8)

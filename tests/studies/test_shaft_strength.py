@@ -184,6 +184,13 @@ def test_the_command_answers_writes_tables_and_refuses(
     status, _, err = invoke("strength", "mine.yaml")
     assert status == 2
     assert "--loads" in err
+    for option in (("--skip", "5"), ("--channel", "Fx=a"), ("--resume",)):
+        status, _, err = invoke("strength", "mine.yaml", "--load", "hub.My=1e6", *option)
+        assert status == 2
+        assert "is about files of hub loads: give --loads" in err
+    status, _, err = invoke("strength", "mine.yaml", "--load", "hub.Fz=1e15")
+    assert status == 2
+    assert "--load hub.Fz: 1e+15 N must be above -1e+12 and below 1e+12 N" in err
     status, _, err = invoke("strength", "two_bearings", "--load", "hub.My=1e6")
     assert status == 2
     assert "strength in the file" in err

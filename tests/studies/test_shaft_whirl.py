@@ -238,3 +238,15 @@ def test_the_command_refuses_options_that_whirl_does_not_take(
         main(["modes", NAME, "--whirl", "--level", "rigid"])
     assert ended.value.code == 2
     assert "--level is of modes of the whole drivetrain" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("more", [("--whirl",), ()])
+def test_speeds_beyond_the_machine_are_refused(
+    more: tuple[str, ...], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["modes", NAME, "--speeds", "1e9:2e9", *more, "--out", str(tmp_path / "out")])
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert "has a speed of 2e+09 1/min but must have one from 0 to 221 1/min, 10 times" in said
+    assert not (tmp_path / "out").exists()

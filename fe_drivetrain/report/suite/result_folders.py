@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.common.folders import HiddenFolder
 from fe_drivetrain.common.progress import Progress, silent
+from fe_drivetrain.common.stopped import replacing
 from fe_drivetrain.report.results import Problem
 from fe_drivetrain.report.suite.case import Case, all_cases
 from fe_drivetrain.report.suite.ownership import (
@@ -101,6 +102,7 @@ def run_case(
     out = Path(out)
     taken = settings_by_case([case], settings or {})[case.name]
     check_result_folder(out)
+    replacing((out / "results.json").is_file())
     shared = shared_folder(out, case)
     if shared is not None and not claim_reports(shared):
         shared = None  # of somebody else: no page of ours goes there

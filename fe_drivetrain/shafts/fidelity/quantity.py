@@ -11,6 +11,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.drivetrain_file.quantity_names import check_reaction
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.fidelity.ladder import LevelModel
 from fe_drivetrain.shafts.response.entering import Factors, factor_values
@@ -65,11 +66,7 @@ class Quantity:
         """
         if self.load is not None:
             factor_values(scene, self.load)
-        names = [*scene.bearing_names, "gearbox"]
-        known = [f"{name}.{c}" for name in names for c in FORCES]
-        known += [f"hub.stiffness.{motion}" for motion in MOTIONS]
-        if self.name not in known:
-            raise InputError(f"quantity {self.name!r} is unknown: use one of {', '.join(known)}")
+        check_reaction(self.name, scene)
 
     @property
     def unit(self) -> str:
