@@ -51,6 +51,13 @@ def test_every_phase_has_a_floor_in_proportion_to_what_it_moves(quick_run: Quick
     for row in rows.values():
         assert row["floor [s]"] * rate == pytest.approx(1e6 * row["bytes [MB]"])
     # conjugate gradients and a cycle: the stiffness once in double and twice in single precision
-    blocks = rows["reduction"]["bytes [MB]"] / 2 / 76
+    (beside,) = results.figures["products"]
+    blocks = beside["matrix [MB]"] / 76
     each = rows["iterations"]["bytes [MB]"] / results.figures["iterations"]
     assert 1.0 < each / (blocks * (76 + 2 * 40)) < 1.5
+    # assembly writes each block once, set-up is the sum of its steps
+    assert blocks * 72 < rows["elements"]["bytes [MB]"] < blocks * 76 * 1.5
+    steps = [row for phase, row in rows.items() if phase.startswith("set-up:")]
+    for what in ("bytes [MB]", "floor [s]"):
+        assert sum(row[what] for row in steps) == pytest.approx(rows["set-up"][what])
+    assert beside["no matrix [MB]"] < 0.5 * beside["matrix [MB]"]

@@ -6,12 +6,14 @@ from pyamg.aggregation.aggregate import standard_aggregation
 from pyamg.aggregation.smooth import jacobi_prolongation_smoother
 from pyamg.aggregation.tentative import fit_candidates
 from pyamg.strength import symmetric_strength_of_connection
+from scipy import sparse
 
 from fe_drivetrain.elasticity.interfaces.constraints import eliminate, fixed
 from fe_drivetrain.elasticity.mesh.blocks import brick
 from fe_drivetrain.elasticity.operator.elasticity import assemble
 from fe_drivetrain.elasticity.solve import multigrid
 from fe_drivetrain.elasticity.solve.aggregates import coarsened
+from fe_drivetrain.elasticity.solve.coarse_product import coarse_product
 from fe_drivetrain.elasticity.solve.reduction import diagonal_blocks, in_blocks, reduce
 
 
@@ -73,3 +75,17 @@ def test_iterations_are_few_with_it_and_many_without(system, rng):
         found = multigrid.conjugate_gradients(system.K, F, made.precondition, 1e-8)
         counts[smoother] = found.iterations
     assert counts["jacobi"] < counts[None]
+
+
+@pytest.mark.parametrize("plain", [True, False])
+def test_the_coarse_product_is_that_of_sparse_matrices(system, rng, plain):
+    """Of blocks that are a number times the identity, and of full ones."""
+    n, n_coarse = system.K.shape[0] // 3, 40
+    some = sparse.random_array((n, n_coarse), density=0.05, rng=rng, format="csr")
+    blocks = np.eye(3) if plain else rng.standard_normal((3, 3))
+    P = sparse.kron(some, blocks, format="csr")
+    found = coarse_product(system.K, P)
+    wanted = (P.T @ system.K.tocsr() @ P).toarray()
+    np.testing.assert_allclose(found.toarray(), wanted, atol=1e-13 * np.abs(wanted).max())
+    assert abs(found - found.T).max() == 0.0
+    assert found.has_canonical_format

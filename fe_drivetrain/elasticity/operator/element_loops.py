@@ -14,7 +14,17 @@ from numpy.typing import NDArray
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.elasticity.mesh.shapes import TETRAHEDRON_EDGES
 from fe_drivetrain.elasticity.operator.kernels import Index, inverse_transposed
-from fe_drivetrain.elasticity.operator.vectors import LANES, fetch, load, plus, store, times
+from fe_drivetrain.elasticity.operator.vectors import (
+    LANES,
+    block_of,
+    fetch,
+    identity,
+    load,
+    plus,
+    store,
+    times,
+    transposed,
+)
 
 # Rows that a thread takes at once have a marker for each node.
 _PIECES = 8
@@ -60,12 +70,15 @@ def sparsity(cells: Index, n_nodes: int) -> tuple[Index, Index, Index]:
     start, fill = np.zeros(n_nodes + 1, np.int64), np.empty(n_nodes, np.int64)
     where, indptr = np.empty(n_cells * k, np.int64), np.zeros(n_nodes + 1, np.int32)
     _find_cells(cells, start, fill, where)
-    markers = np.full((_PIECES, n_nodes), -1, np.int32)
-    in_pieces(_PIECES, _count_pairs, cells, start, where, markers, indptr)
-    np.cumsum(indptr, out=indptr)
+    seen, following = np.empty((2, _PIECES, n_nodes), np.int32)
+    seen[:], following[:] = -1, 0
+    in_pieces(_PIECES, _count_pairs, cells, start, where, seen, following)
+    np.cumsum(following.sum(axis=0), out=indptr[1:])
+    # in each row the columns of a piece come behind those of the pieces before it
+    following[:] = indptr[:-1] + np.cumsum(following, axis=0, dtype=np.int32) - following
     indices, slots = np.empty(indptr[-1], np.int32), np.empty((n_cells, k, k), np.int32)
-    markers[:] = -1
-    in_pieces(_PIECES, _place_pairs, cells, start, where, markers, indptr, indices, slots)
+    seen[:] = -1
+    in_pieces(_PIECES, _place_pairs, cells, start, where, seen, following, indices, slots)
     return indptr, indices, slots
 
 
@@ -113,22 +126,20 @@ def _count_pairs(
     cells: Index,
     start: NDArray[np.int64],
     where: NDArray[np.int64],
-    markers: Index,
+    seen: Index,
     counts: Index,
 ) -> None:
-    """Number of nodes that share a cell with node i, in ``counts[i + 1]``."""
+    """Number of nodes of a piece that share a cell with node i, in ``counts[piece, i]``."""
     k, n = cells.shape[1], len(start) - 1
-    seen = markers[piece]
-    for i in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
-        count = 0
-        for w in range(start[i], start[i + 1]):
+    last, count = seen[piece], counts[piece]
+    for j in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
+        for w in range(start[j], start[j + 1]):
             c = where[w] // k
-            for b in range(k):
-                j = cells[c, b]
-                if seen[j] != i:
-                    seen[j] = i
-                    count += 1
-        counts[i + 1] = count
+            for a in range(k):
+                i = cells[c, a]
+                if last[i] != j:
+                    last[i] = j
+                    count[i] += 1
 
 
 @njit(cache=True, nogil=True)
@@ -137,39 +148,29 @@ def _place_pairs(
     cells: Index,
     start: NDArray[np.int64],
     where: NDArray[np.int64],
-    markers: Index,
-    indptr: Index,
+    seen: Index,
+    following: Index,
     indices: Index,
     slots: Index,
 ) -> None:
-    """Columns of the rows, and where each pair of a cell stands among them."""
+    """Columns of the rows, and where each pair of a cell stands among them.
+
+    Column by column, so that rows come to be sorted; ``following`` is where the next column of a
+    piece stands in each row.
+    """
     k, n = cells.shape[1], len(start) - 1
-    # where a node stands in the row; before this row's first place it stood in another one
-    place = markers[piece]
-    for i in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
-        first = end = indptr[i]
-        for w in range(start[i], start[i + 1]):
+    last, end = seen[piece], following[piece]
+    for j in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
+        for w in range(start[j], start[j + 1]):
             c = where[w] // k
-            for b in range(k):
-                j = cells[c, b]
-                if place[j] < first:
-                    place[j] = first
-                    indices[end] = j
-                    end += 1
-        # By insertion: rows are short, and NumPy's sort would take a second to compile.
-        for p in range(first, end):
-            j, q = indices[p], p
-            while q > first and indices[q - 1] > j:
-                indices[q] = indices[q - 1]
-                q -= 1
-            indices[q] = j
-        for p in range(first, end):
-            place[indices[p]] = p
-        for w in range(start[i], start[i + 1]):
-            c = where[w] // k
-            a = where[w] - c * k
-            for b in range(k):
-                slots[c, a, b] = place[cells[c, b]]
+            b = where[w] - c * k
+            for a in range(k):
+                i = cells[c, a]
+                if last[i] != j:
+                    last[i] = j
+                    indices[end[i]] = j
+                    end[i] += 1
+                slots[c, a, b] = end[i] - 1
 
 
 @njit(inline="always")
@@ -180,18 +181,18 @@ def _add_pair(
 
     H is column b of a's three rows in S; indices cannot be negative.
     """
-    three, wide, first = np.uint64(3), np.uint64(width), np.uint64(3 * b)
+    wide, first, two, last = np.uint64(width), np.uint64(3 * b), np.uint64(2), np.uint64(LANES)
     t, back = np.uint64(9 * ab), np.uint64(9 * ba)
-    one = np.uint64(1)
-    trace = mu * (S[first] + S[wide + first + one] + S[wide + wide + first + one + one])
-    for i in range(three):
-        for j in range(three):
-            value = lam * S[wide * i + first + j] + mu * S[wide * j + first + i]
-            if i == j:
-                value += trace
-            data[t + three * i + j] += value
-            if ab != ba:
-                data[back + three * j + i] += value
+    H = block_of(load(S, first), load(S, wide + first), load(S, two * wide + first))
+    corner = S[two * wide + first + two]
+    trace = mu * (S[first] + S[wide + first + np.uint64(1)] + corner)
+    block = plus(plus(times(lam, H), mu, transposed(H)), trace, identity())
+    corner = (lam + mu) * corner + trace
+    store(plus(block, 1.0, load(data, t)), data, t)
+    data[t + last] += corner
+    if ab != ba:
+        store(plus(transposed(block), 1.0, load(data, back)), data, back)
+        data[back + last] += corner
 
 
 def add_elements(

@@ -197,6 +197,63 @@ def row_sums(typing: Any, vector: Any) -> Any:
 
 
 @_in_loops
+def block_of(typing: Any, f: Any, g: Any, h: Any) -> Any:
+    """The 3x3 block, but for its last entry, whose rows three vectors begin with."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        f, g, h = given
+        two = _shuffled(builder, f, g, (0, 1, 2, 8, 9, 10, 0, 0))
+        return _shuffled(builder, two, h, (0, 1, 2, 3, 4, 5, 8, 9))
+
+    return _VECTOR(f, g, h), generate
+
+
+@_in_loops
+def transposed(typing: Any, vector: Any) -> Any:
+    """The transpose of a 3x3 block without its last entry, which stays."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        return _shuffled(builder, given[0], given[0], (0, 3, 6, 1, 4, 7, 2, 5))
+
+    return _VECTOR(vector), generate
+
+
+@_in_loops
+def plus_product(typing: Any, vector: Any, a: Any, a_rest: Any, b: Any, b_rest: Any) -> Any:
+    """The sum of a 3x3 block and the product of two others, without its last entry.
+
+    Both are given by their first eight entries, and by their last eight.
+    """
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        found, a, a_rest, b, b_rest = given
+        for left, right, column, row in ((a, b, 0, 0), (a, b, 1, 3), (a_rest, b_rest, 1, 5)):
+            one = _shuffled(builder, left, left, tuple(column + k // 3 * 3 for k in range(LANES)))
+            other = _shuffled(builder, right, right, tuple(row + k % 3 for k in range(LANES)))
+            product = builder.fmul(one, other, flags=("contract",))
+            found = builder.fadd(found, product, flags=("contract",))
+        return found
+
+    return _VECTOR(vector, a, a_rest, b, b_rest), generate
+
+
+def _shuffled(builder: Any, one: Any, other: Any, places: tuple[int, ...]) -> Any:
+    """Lanes of two vectors, those of the other from `LANES` on."""
+    chosen = ir.Constant(ir.VectorType(_PLACE, LANES), list(places))
+    return builder.shuffle_vector(one, other, chosen)
+
+
+@_in_loops
+def identity(typing: Any) -> Any:
+    """The identity as a 3x3 block without its last entry."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        return ir.Constant(_LANES, [float(k % 4 == 0) for k in range(LANES)])
+
+    return _VECTOR(), generate
+
+
+@_in_loops
 def fetch(typing: Any, array: Any, index: Any) -> Any:
     """Ask memory for what a loop will read at an index of a flat array, within it or beyond."""
 

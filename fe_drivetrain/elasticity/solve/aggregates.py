@@ -5,16 +5,10 @@ block Jacobi iteration, whose inverses and maximum eigenvalue the smoother of th
 and pyamg would estimate again, from random numbers.
 """
 
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
-from numba import get_num_threads
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
-
-# Rows of a product that a thread takes at once, and blocks from which on that is worth it.
-_PARTS, _MANY = 4, 20_000
 
 #: Factor of the Jacobi step, over the maximum eigenvalue: best for eigenvalues above a third of it.
 _DAMPING = 4.0 / 3.0
@@ -70,35 +64,3 @@ def coarsened(
     )
     step.data = _DAMPING / largest * scaled.reshape(step.data.shape)
     return (tentative - step).tobsr(tentative.blocksize), coarse
-
-
-def between_aggregates(K: sparse.bsr_array, prolongation: sparse.bsr_array) -> sparse.bsr_array:
-    """P^T K P, by parts of the rows of K on all cores: SciPy's products let others work meanwhile.
-
-    Parameters
-    ----------
-    K : sparse.bsr_array
-        Stiffness (n, n).
-    prolongation : sparse.bsr_array
-        Prolongation (n, n_coarse), in blocks with as many rows.
-    """
-    if len(K.indices) <= _MANY:
-        return prolongation.T @ (K @ prolongation)
-    cuts = np.linspace(0, len(K.indptr) - 1, _PARTS + 1).astype(int)
-
-    def part(low: int, high: int) -> sparse.bsr_array:
-        return _rows(prolongation, low, high).T @ (_rows(K, low, high) @ prolongation)
-
-    with ThreadPoolExecutor(get_num_threads()) as pool:
-        first, *others = pool.map(part, cuts[:-1], cuts[1:])
-    return sum(others, first)
-
-
-def _rows(A: sparse.bsr_array, low: int, high: int) -> sparse.bsr_array:
-    """Block rows of a matrix, without a copy."""
-    some = slice(A.indptr[low], A.indptr[high])
-    return sparse.bsr_array(
-        (A.data[some], A.indices[some], A.indptr[low : high + 1] - A.indptr[low]),
-        shape=((high - low) * A.blocksize[0], A.shape[1]),
-        blocksize=A.blocksize,
-    )

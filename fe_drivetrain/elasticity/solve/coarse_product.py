@@ -2,7 +2,9 @@
 
 A general product of block matrices first makes K P, which is nearly as large as K, and takes each
 block of P as a full one. Between quadratic and linear elements on the same corners nearly all are
-a number times the identity, and two or fewer a node.
+a number times the identity, and two or fewer a node. Here each row of P^T K is summed up by itself,
+in a cache, before it is multiplied with P; and only what is right of the diagonal, the product
+being symmetric.
 """
 
 from typing import NamedTuple
@@ -15,10 +17,21 @@ from scipy import sparse
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.elasticity.operator.element_loops import in_pieces
 from fe_drivetrain.elasticity.operator.kernels import AHEAD, Index, pattern_of
-from fe_drivetrain.elasticity.operator.vectors import LANES, fetch, load, plus, store
+from fe_drivetrain.elasticity.operator.vectors import (
+    LANES,
+    fetch,
+    load,
+    plus,
+    plus_product,
+    store,
+    times,
+)
 
-# Rows that a thread takes at once have a marker for each coarse node.
+# Rows that a thread takes at once have a marker for each node.
 _PIECES = 16
+
+# Numbers from one block of a row in a cache to the next: whole lines.
+_ROOM = 16
 
 
 def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> sparse.bsr_array:
@@ -27,36 +40,42 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
     Parameters
     ----------
     K : sparse.bsr_array
-        Stiffness (n, n) in 3x3 blocks.
+        Stiffness (n, n) in 3x3 blocks, symmetric.
     prolongation : sparse.csr_array
         (n, n_coarse), both multiples of three.
 
     Returns
     -------
     coarse
-        (n_coarse, n_coarse) in 3x3 blocks.
+        (n_coarse, n_coarse) in 3x3 blocks, symmetric to the last digit.
     """
-    n = prolongation.shape[1]
+    n_fine, n = K.shape[0] // 3, prolongation.shape[1]
     P = prolongation.tobsr((3, 3))
     forwards, back = _transfer(P), _transfer(P.T)
+    last = np.full(n_fine, -1, dtype=np.int32)
+    some = np.flatnonzero(np.diff(forwards.indptr))
+    last[some] = np.maximum.reduceat(forwards.indices, forwards.indptr[some])
     pieces = np.linspace(0, n // 3, _PIECES + 1).astype(np.int64)
-    indptr = np.zeros(n // 3 + 1, dtype=np.int32)
+    indptr, most = np.zeros(n // 3 + 1, dtype=np.int32), np.zeros(_PIECES, dtype=np.int64)
+    # NumPy makes the arrays out here: in a compiled loop that takes longer to compile
+    markers = _Markers(*(np.full((_PIECES, m), -1, np.int32) for m in (n_fine, n // 3)), last)
     patterns = back.pattern, _Pattern(K.indptr, K.indices), forwards.pattern
-    # NumPy makes the array out here: in a compiled loop that takes longer to compile
-    markers = np.full((_PIECES, n // 3), -1, dtype=np.int64)
-    in_pieces(_PIECES, _count, *patterns, pieces, markers, indptr[1:])
+    in_pieces(_PIECES, _count, *patterns, pieces, markers, indptr[1:], most)
     np.cumsum(indptr, out=indptr)
-    markers[:] = -1
+    markers.fine[:], markers.coarse[:] = -1, -1
     indices, data = np.empty(indptr[-1], dtype=np.int32), np.zeros((indptr[-1], 3, 3))
+    row = _Row(
+        np.empty((_PIECES, most.max()), np.int32), np.empty((_PIECES, most.max() * _ROOM + LANES))
+    )
     in_pieces(
         *(_PIECES, _fill),
         *(back, _Rows(K.indptr, K.indices, K.data.ravel()), forwards),
-        *(pieces, markers, _Rows(indptr, indices, data.ravel())),
+        *(pieces, markers, row, _Rows(indptr, indices, data.ravel())),
     )
-    coarse = sparse.bsr_array((data, indices, indptr), shape=(n, n))
-    coarse.has_sorted_indices = False
-    coarse.sort_indices()
-    return coarse
+    data[indices == np.repeat(np.arange(n // 3), np.diff(indptr))] *= 0.5
+    # turned twice, rows are sorted
+    left = sparse.bsr_array((data, indices, indptr), shape=(n, n)).T
+    return left + left.T
 
 
 class _Pattern(NamedTuple):
@@ -72,6 +91,21 @@ class _Rows(NamedTuple):
     indptr: Index
     indices: Index
     data: Floats
+
+
+class _Markers(NamedTuple):
+    """What each piece has met of fine and coarse nodes, and the last coarse node of fine ones."""
+
+    fine: Index
+    coarse: Index
+    last: Index
+
+
+class _Row(NamedTuple):
+    """For each piece a row of P^T K: its columns, and its blocks."""
+
+    columns: Index
+    blocks: Floats
 
 
 class _Transfer(NamedTuple):
@@ -93,7 +127,7 @@ def _transfer(P: sparse.bsr_array) -> _Transfer:
     plain = (first == others[3]) & (first == last)
     for place in (0, 1, 2, 4, 5, 6):
         plain &= others[place] == 0.0
-    return _Transfer(*pattern_of(P), P.data, np.where(plain, first, np.nan))
+    return _Transfer(*pattern_of(P), P.data.ravel(), np.where(plain, first, np.nan))
 
 
 @njit(cache=True, nogil=True)
@@ -103,23 +137,30 @@ def _count(
     K: _Pattern,
     P: _Pattern,
     pieces: NDArray[np.int64],
-    markers: NDArray[np.int64],
+    markers: _Markers,
     counts: Index,
+    most: NDArray[np.int64],
 ) -> None:
-    """Number of blocks in each coarse row of R K P."""
+    """Blocks in each coarse row of R K P from the diagonal on, and most columns of R K."""
     (Rptr, Rind), (Kptr, Kind), (Pptr, Pind) = R, K, P
-    seen = markers[piece]
+    met, seen, last = markers.fine[piece], markers.coarse[piece], markers.last
     for a in range(pieces[piece], pieces[piece + 1]):
-        count = 0
+        count = columns = 0
         for s in range(Rptr[a], Rptr[a + 1]):
             i = Rind[s]
             for p in range(Kptr[i], Kptr[i + 1]):
                 j = Kind[p]
+                if last[j] < a or met[j] == a:
+                    continue
+                met[j] = a
+                columns += 1
                 for q in range(Pptr[j], Pptr[j + 1]):
-                    if seen[Pind[q]] != a:
-                        seen[Pind[q]] = a
+                    b = Pind[q]
+                    if b >= a and seen[b] != a:
+                        seen[b] = a
                         count += 1
         counts[a] = count
+        most[piece] = max(most[piece], columns)
 
 
 @njit(cache=True, nogil=True)
@@ -129,34 +170,59 @@ def _fill(
     K: _Rows,
     P: _Transfer,
     pieces: NDArray[np.int64],
-    markers: NDArray[np.int64],
+    markers: _Markers,
+    row: _Row,
     coarse: _Rows,
 ) -> None:
-    """Sum the blocks of each coarse row of R K P, in the order in which they are met."""
+    """Sum the blocks of each coarse row of R K P from the diagonal on, in the order met."""
     Rptr, Rind, left, to = R
     Kptr, Kind, values = K
     Pptr, Pind, right, of = P
     indptr, indices, data = coarse
-    place = markers[piece]
+    met, place, last = markers.fine[piece], markers.coarse[piece], markers.last
+    columns, W = row.columns[piece], row.blocks[piece]
+    base = count = 0  # fine nodes of rows before, and of this one
     for a in range(pieces[piece], pieces[piece + 1]):
-        first = end = np.int64(indptr[a])
+        base, count = base + count, 0
         for s in range(Rptr[a], Rptr[a + 1]):
-            i, weight = Rind[s], to[s]
+            i, factor = Rind[s], to[s]
             for p in range(Kptr[i], Kptr[i + 1]):
                 j = Kind[p]
                 fetch(values, 9 * p + AHEAD // values.itemsize)
-                for q in range(Pptr[j], Pptr[j + 1]):
-                    b = Pind[q]
-                    t = place[b]
-                    if t < first:
-                        t = place[b] = end
-                        indices[end] = b
-                        end += 1
-                    factor = weight * of[q]
-                    if factor == factor:
-                        _add(data, np.uint64(9 * t), factor, values, np.uint64(9 * p))
-                    else:
-                        _add_between(data, 9 * t, left[s], values, 9 * p, right[q])
+                if last[j] < a:
+                    continue
+                if met[j] < base:
+                    met[j] = base + count
+                    columns[count] = j
+                    _put(W, np.uint64(_ROOM * count), 0.0, values, np.uint64(9 * p))
+                    count += 1
+                w = np.uint64(_ROOM * (met[j] - base))
+                if factor == factor:
+                    _add(W, w, factor, values, np.uint64(9 * p))
+                else:
+                    _add_product(W, w, left, np.uint64(9 * s), values, np.uint64(9 * p))
+        first = end = np.int64(indptr[a])
+        for c in range(count):
+            for q in range(Pptr[columns[c]], Pptr[columns[c] + 1]):
+                b, factor = Pind[q], of[q]
+                if b < a:
+                    continue
+                if place[b] < first:
+                    place[b] = end
+                    indices[end] = b
+                    end += 1
+                t = np.uint64(9) * np.uint64(place[b])
+                if factor == factor:
+                    _add(data, t, factor, W, np.uint64(_ROOM * c))
+                else:
+                    _add_product(data, t, W, np.uint64(_ROOM * c), right, np.uint64(9 * q))
+
+
+@njit(inline="always")
+def _put(data: Floats, t: np.uint64, factor: float, K: Floats, p: np.uint64) -> None:
+    """Put a factor times a block; at indices that cannot be negative."""
+    store(times(factor, load(K, p)), data, t)
+    data[t + np.uint64(LANES)] = factor * K[p + np.uint64(LANES)]
 
 
 @njit(inline="always")
@@ -166,11 +232,14 @@ def _add(data: Floats, t: np.uint64, factor: float, K: Floats, p: np.uint64) -> 
     data[t + np.uint64(LANES)] += factor * K[p + np.uint64(LANES)]
 
 
-@njit(cache=True)
-def _add_between(data: Floats, t: int, left: Floats, K: Floats, p: int, right: Floats) -> None:
-    """Add left K right."""
-    for r in range(3):
-        for c in range(3):
-            for i in range(3):
-                for j in range(3):
-                    data[t + 3 * r + c] += left[r, i] * K[p + 3 * i + j] * right[j, c]
+@njit(inline="always")
+def _add_product(
+    data: Floats, t: np.uint64, one: Floats, s: np.uint64, other: Floats, p: np.uint64
+) -> None:
+    """Add the product of two blocks; at indices that cannot be negative."""
+    rest, last = np.uint64(1), np.uint64(LANES)
+    a, b = load(one, s), load(other, p)
+    found = plus_product(load(data, t), a, load(one, s + rest), b, load(other, p + rest))
+    store(found, data, t)
+    for i in (np.uint64(2), np.uint64(1), np.uint64(0)):
+        data[t + last] += one[s + last - i] * other[p + last - np.uint64(3) * i]

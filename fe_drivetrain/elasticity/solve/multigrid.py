@@ -20,7 +20,7 @@ from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.elasticity.operator import kernels
 from fe_drivetrain.elasticity.operator.vectors import LANES
-from fe_drivetrain.elasticity.solve.aggregates import between_aggregates, coarsened
+from fe_drivetrain.elasticity.solve.aggregates import coarsened
 from fe_drivetrain.elasticity.solve.coarse_product import coarse_product
 from fe_drivetrain.elasticity.solve.reduction import Joints, System, diagonal_blocks, in_blocks
 from fe_drivetrain.elasticity.solve.stopping import LAST_DIGIT, energy_error, is_hopeless
@@ -251,11 +251,12 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
         if connected is None:
             connected = symmetric_strength_of_connection(K, options.strength)
         # Six degrees of freedom an aggregate below the first level: two blocks of three.
-        smoothing = _smoothing(in_blocks(K), options)
+        blocks = in_blocks(K)
+        smoothing = _smoothing(blocks, options)
         degree = options.coarse_degree if levels else options.degree
         P, motions = coarsened(K, motions, connected, options.prolongation_smoother, *smoothing[1:])
         levels.append(Level(*smoothing, degree, _in_rows(P), _in_rows(P.T)))
-        K, connected = between_aggregates(K, P), None
+        K, connected = coarse_product(blocks, levels[-1].prolongation).tobsr((6, 6)), None
     last = K.toarray()
     # Aggregates too small for six motions leave empty rows.
     empty = np.flatnonzero(last.diagonal() <= 0.0)

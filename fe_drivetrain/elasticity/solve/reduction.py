@@ -136,11 +136,11 @@ def reduce(
         Whether the system may take the place of K where nothing else needs it: K is lost, and half
         of the memory saved.
     """
-    elements = Elements(
-        points, cells, diagonal_blocks(K)[: len(points)], elimination.T, elimination.free
-    )
+    places = _diagonal_places(K)
+    diagonal = _blocks_at(K, places[: len(points)])
+    elements = Elements(points, cells, diagonal, elimination.T, elimination.free)
     means = [c.is_mean for c in elimination.constraints] + [point.is_mean for point, _ in springs]
-    reduced = reduced_stiffness(K, elimination, overwrite and not any(means))
+    reduced = reduced_stiffness(K, elimination, overwrite and not any(means), places)
     system = _system(points, cells, reduced, elimination)
     joints = partial(_joints, points, cells, K, elimination, springs) if any(means) else None
     return replace(system, elements=elements, joints=joints)
@@ -179,8 +179,13 @@ def _system(
 
 def diagonal_blocks(K: sparse.bsr_array) -> Floats:
     """(n_blocks, 3, 3) diagonal blocks; zero where there are none."""
-    places = _diagonal_places(K)
-    return np.where((places < 0)[:, None, None], 0.0, K.data[places])
+    return _blocks_at(K, _diagonal_places(K))
+
+
+def _blocks_at(K: sparse.bsr_array, places: Ints) -> Floats:
+    blocks: Floats = K.data[places]
+    blocks[places < 0] = 0.0
+    return blocks
 
 
 def _diagonal_places(K: sparse.bsr_array) -> Ints:
@@ -190,11 +195,18 @@ def _diagonal_places(K: sparse.bsr_array) -> Ints:
 
 
 def reduced_stiffness(
-    K: sparse.bsr_array, elimination: Elimination, overwrite: bool = False
+    K: sparse.bsr_array,
+    elimination: Elimination,
+    overwrite: bool = False,
+    diagonal: Ints | None = None,
 ) -> sparse.bsr_array:
-    """T^T K T, with the mean diagonal at eliminated degrees of freedom; K may be overwritten."""
+    """T^T K T, with the mean diagonal at eliminated degrees of freedom; K may be overwritten.
+
+    Where the places of the diagonal blocks are known, they need not be found again.
+    """
     T, free = elimination.T, elimination.free
-    diagonal = _diagonal_places(K)
+    if diagonal is None:
+        diagonal = _diagonal_places(K)
     mean = float(np.einsum("nii->", K.data[diagonal[diagonal >= 0]])) / len(free)
     passed = passed_on(K, T, free)
     indptr, indices = kernels.pattern_of(K)
