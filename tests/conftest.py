@@ -1,5 +1,7 @@
 """What several test modules use: coarse scenes, built once a session, and commands in a folder."""
 
+from __future__ import annotations
+
 import gc
 import os
 import shutil
@@ -9,41 +11,29 @@ from collections.abc import Callable, Generator, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import filelock
 import hypothesis
-import numba
-import numpy as np
 import pytest
-from coarse_scenes import coarse_scene
-from numba.core.caching import NullCache
-from numba.core.compiler_lock import global_compiler_lock
-from numba.core.dispatcher import Dispatcher
-from tiny_case import SCRIPT, Result, count
-from xdist.remote import Producer
 from xdist.scheduler import LoadScopeScheduling
 
-from fe_drivetrain.command_line.app import main
 from fe_drivetrain.common import cache, threads
 from fe_drivetrain.common.errors import MissingToolError
 from fe_drivetrain.common.progress import silent
-from fe_drivetrain.drivetrain_file.reading import change_scene
-from fe_drivetrain.elasticity.mesh.mesh import Mesh
-from fe_drivetrain.report.pictures import drawing_process
-from fe_drivetrain.report.results import Results, read_results
 from fe_drivetrain.report.suite import case as case_module
-from fe_drivetrain.report.suite.case import Case
-from fe_drivetrain.report.suite.result_folders import (
-    new_folder,
-    put_in_place,
-    result_folder,
-    run_into,
-)
-from fe_drivetrain.report.suite.resuming import finished_cases
-from fe_drivetrain.report.suite.suite import run_cases
-from fe_drivetrain.shafts.response.model import Model, build_model, mesh_scene
-from fe_drivetrain.shafts.response.unit_loads import Response, unit_load_response
+
+# Solvers are imported where they are used: the process that starts the others needs none of them.
+if TYPE_CHECKING:
+    import numpy as np
+    from tiny_case import Result
+    from xdist.remote import Producer
+
+    from fe_drivetrain.elasticity.mesh.mesh import Mesh
+    from fe_drivetrain.report.results import Results
+    from fe_drivetrain.report.suite.case import Case
+    from fe_drivetrain.shafts.response.model import Model
+    from fe_drivetrain.shafts.response.unit_loads import Response
 
 # Tests of one room take helpers of others.
 sys.path[1:1] = sorted(str(folder) for folder in Path(__file__).parent.iterdir() if folder.is_dir())
@@ -101,6 +91,9 @@ def apart_from_the_user(shared_folder: Path) -> Iterator[None]:
 
     Other tests take the other cores meanwhile: two threads would wait for each other in every loop.
     """
+    import numba  # noqa: F401 - libraries that are loaded are held
+    import scipy.linalg  # noqa: F401
+
     with pytest.MonkeyPatch.context() as patch, threads.held_to_one_thread():
         patch.setenv(cache.CACHE_VARIABLE, str(shared_folder / "cache"))
         patch.setenv(threads.CORES_VARIABLE, "1")
@@ -113,6 +106,10 @@ def compiled_once(shared_folder: Path) -> Iterator[None]:
 
     On a fresh clone all of them began with the same loops, and each compiled them for itself.
     """
+    from numba.core.caching import NullCache
+    from numba.core.compiler_lock import global_compiler_lock
+    from numba.core.dispatcher import Dispatcher
+
     folder = shared_folder / "loops"
     folder.mkdir(exist_ok=True)
     compile_ = Dispatcher.compile
@@ -137,6 +134,8 @@ def left_with_one_thread() -> Iterator[None]:
     They would wait for each other in all tests after it, which then take five times as long.
     """
     yield
+    import numba
+
     assert numba.get_num_threads() == 1
 
 
@@ -176,27 +175,35 @@ class QuickRun:
         return results
 
     def _results(self, case: Case) -> Results:
+        from fe_drivetrain.report.results import read_results
+        from fe_drivetrain.report.suite.result_folders import result_folder
+
         return read_results(result_folder(self.folder, case) / "results.json")
 
     def _standing(self, case: Case) -> Results | None:
         """Results that the same program has made, with the same packages."""
+        from fe_drivetrain.report.suite.resuming import finished_cases
+
         if not finished_cases([case], self.folder, quick=True):
             return None
         results = self._results(case)
         return results if self.given or all(v.passed for v in results.verdicts) else None
 
     def _run(self, case: Case) -> None:
+        from fe_drivetrain.report.suite import result_folders
+        from fe_drivetrain.report.suite.suite import run_cases
+
         if case.runs_alone(quick=True):
             problem = run_cases([case], self.folder, quick=True).get(case.name)
             if problem is not None and problem.state == "skipped":
                 pytest.skip(problem.message)
             assert problem is None, problem
             return
-        target = result_folder(self.folder, case)
-        folder = new_folder(target)
+        target = result_folders.result_folder(self.folder, case)
+        folder = result_folders.new_folder(target)
         try:  # as `run_case`, without the pages of all cases, which take longer than many a case
-            run_into(case, folder.path, {}, True, silent, self.folder)
-            put_in_place(folder, target)
+            result_folders.run_into(case, folder.path, {}, True, silent, self.folder)
+            result_folders.put_in_place(folder, target)
         except MissingToolError as error:
             pytest.skip(str(error))
         finally:
@@ -204,15 +211,20 @@ class QuickRun:
 
 
 #: Files that take longest: they begin first, so that at the end no process waits for another. The
-#: second one compiles other loops than the first.
+#: first one forks, which is quick while a process has little in memory. It compiles nothing, so
+#: that it does not wait for loops of the second.
 LONG = (
-    "test_uncertainty_study.py",
-    "test_axisymmetric.py",
+    "test_faults.py",
     "test_docs_pages.py",
+    "test_foreign_files.py",
+    "test_uncertainty_study.py",
     "test_own_drivetrain.py",
     "test_main_bearing_cases.py",
+    "test_own_drivetrains.py",
+    "test_design_search.py",
+    "test_face.py",
+    "test_axisymmetric.py",
     "test_own_scenes.py",
-    "test_faults.py",
     "test_planet_carrier.py",
     "test_processes.py",
     "test_mutations.py",
@@ -317,6 +329,7 @@ def kept_between_runs(kept_folder: Path) -> Iterator[None]:
 @pytest.fixture(scope="module")
 def without_pictures() -> Iterator[None]:
     """Draw nothing, as on a machine that cannot; of quick cases a third of the time is drawing."""
+    from fe_drivetrain.report.pictures import drawing_process
 
     def refuse() -> None:
         raise drawing_process.NoPictureError("no picture is asked for")
@@ -344,23 +357,39 @@ def interruptible() -> None:
 
 @pytest.fixture(scope="session")
 def spherical_mesh() -> Mesh:
+    from coarse_scenes import coarse_scene
+
+    from fe_drivetrain.shafts.response.model import mesh_scene
+
     return mesh_scene(coarse_scene("spherical"))
 
 
 @pytest.fixture(scope="session")
 def bonded_model() -> Model:
+    from coarse_scenes import coarse_scene
+
+    from fe_drivetrain.shafts.response.model import build_model, mesh_scene
+
     scene = coarse_scene("bonded")
     return build_model(scene, mesh_scene(scene))
 
 
 @pytest.fixture(scope="session")
 def bonded_response(bonded_model: Model) -> Response:
+    from fe_drivetrain.shafts.response.unit_loads import unit_load_response
+
     return unit_load_response(bonded_model)
 
 
 @pytest.fixture(scope="session")
 def spherical_responses(spherical_mesh: Mesh) -> dict[str, tuple[Model, Response]]:
     """Model and response for each form of the spherical joint."""
+    from coarse_scenes import coarse_scene
+
+    from fe_drivetrain.drivetrain_file.reading import change_scene
+    from fe_drivetrain.shafts.response.model import build_model
+    from fe_drivetrain.shafts.response.unit_loads import unit_load_response
+
     found = {}
     for form in ("sliding", "averaged", "rigid"):
         scene = change_scene(coarse_scene("spherical"), {"bearing_units.0.interface": form})
@@ -371,6 +400,8 @@ def spherical_responses(spherical_mesh: Mesh) -> dict[str, tuple[Model, Response
 
 @pytest.fixture
 def rng() -> np.random.Generator:
+    import numpy as np
+
     return np.random.default_rng(1)
 
 
@@ -379,9 +410,14 @@ def invoke(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> Callable[..., Result]:
     """Run the command in an empty folder, with one case that does the given work."""
+    from tiny_case import count
+
+    from fe_drivetrain.command_line import app
+    from fe_drivetrain.report.suite.case import Case
+
     monkeypatch.chdir(tmp_path)
 
-    def run(*arguments: str, work: Any = count, main: Callable[[], None] = main) -> Result:
+    def run(*arguments: str, work: Any = count, main: Callable[[], None] = app.main) -> Result:
         takes: dict[str, Any] = {"settings": ("a", "k"), "changes": "scene"}
         cases = {
             "group/tiny": Case("group/tiny", "A tiny case", "nobody", work, **takes),
@@ -403,6 +439,8 @@ def invoke(
 @pytest.fixture
 def script(tmp_path: Path) -> Path:
     """A user's own script of a case."""
+    from tiny_case import SCRIPT
+
     path = tmp_path / "tiny.py"
     path.write_text(SCRIPT, "utf-8")
     return path

@@ -173,7 +173,7 @@ def with_loops(package: Path) -> tuple[str, ...]:
     return tuple(
         _name(package, path)
         for path in package.rglob("*.py")
-        if re.search(r"^from numba|^import numba|^\s+from numba", path.read_text("utf-8"), re.M)
+        if re.search(r"^\s*(from|import) .*numba", path.read_text("utf-8"), re.M)
     )
 
 

@@ -108,15 +108,30 @@ def stiffness_by(tool, variant, problem):
     return stiffness
 
 
-def measured(variant, problem, folder, limits=LIMITS):
+@pytest.fixture(scope="module")
+def looked_for():
+    """What an interpreter has said that it does not have; it takes a process to hear so."""
+    return {}
+
+
+@pytest.fixture
+def measured(looked_for, tmp_path):
     """A tool in a process of its own, in whichever Python has it."""
-    path = folder / "problem.npz"
-    runner.write_problem(problem, path)
-    for interpreter in interpreters():
-        outcome = launching.launch(variant, path, path, limits, interpreter)
-        if outcome.status != "missing":
-            return outcome
-    return outcome
+
+    def run(variant, problem, limits=LIMITS):
+        path = tmp_path / "problem.npz"
+        runner.write_problem(problem, path)
+        for interpreter in interpreters():
+            key = variant, interpreter
+            outcome = looked_for.get(key) or launching.launch(
+                variant, path, path, limits, interpreter
+            )
+            if outcome.status != "missing":
+                return outcome
+            looked_for[key] = outcome
+        return outcome
+
+    return run
 
 
 # --- the same answer
@@ -171,8 +186,8 @@ def test_two_materials_in_series_are_springs_in_series(tool, variant, bar):
 
 @pytest.mark.needs  # looked for in the process of its own
 @pytest.mark.parametrize("variant", PEERS, ids=str)
-def test_installed_peers_agree_where_quadrature_is_exact(variant, bar, tmp_path):
-    outcome = measured(variant, bar, tmp_path)
+def test_installed_peers_agree_where_quadrature_is_exact(variant, bar, measured):
+    outcome = measured(variant, bar)
     if outcome.status == "missing":
         pytest.skip(f"{variant.tool_name} is not installed: {outcome.reason}")
     assert outcome.status == "done", outcome.reason
@@ -181,9 +196,9 @@ def test_installed_peers_agree_where_quadrature_is_exact(variant, bar, tmp_path)
 
 
 @pytest.mark.parametrize("variant", BEYOND, ids=str)
-def test_peers_beyond_the_usual_ones_agree_on_every_motion_of_the_face(variant, bar, tmp_path):
+def test_peers_beyond_the_usual_ones_agree_on_every_motion_of_the_face(variant, bar, measured):
     problem = problems.with_motions(bar, 10)
-    outcome = measured(variant, problem, tmp_path)
+    outcome = measured(variant, problem)
     if outcome.status == "missing":
         pytest.skip(f"{variant.tool_name} is not installed: {outcome.reason}")
     assert outcome.status == "done", outcome.reason
@@ -193,9 +208,9 @@ def test_peers_beyond_the_usual_ones_agree_on_every_motion_of_the_face(variant, 
 
 @pytest.mark.needs  # looked for in the process of its own
 @pytest.mark.parametrize("variant", PEERS, ids=str)
-def test_installed_peers_agree_on_every_motion_of_the_face(variant, bar, tmp_path):
+def test_installed_peers_agree_on_every_motion_of_the_face(variant, bar, measured):
     problem = problems.with_motions(bar, 10)
-    outcome = measured(variant, problem, tmp_path)
+    outcome = measured(variant, problem)
     if outcome.status == "missing":
         pytest.skip(f"{variant.tool_name} is not installed: {outcome.reason}")
     assert outcome.status == "done", outcome.reason
@@ -295,8 +310,8 @@ def test_the_log_of_ccx_is_split_into_reading_assembly_and_solving():
 # --- processes and their limits
 
 
-def test_a_process_measures_what_this_one_finds(bar, tmp_path):
-    outcome = measured(Variant("this_project", "superlu"), bar, tmp_path)
+def test_a_process_measures_what_this_one_finds(bar, measured):
+    outcome = measured(Variant("this_project", "superlu"), bar)
     assert outcome.status == "done", outcome.reason
     found = outcome.found
     assert found["stiffness"] == pytest.approx(
@@ -307,11 +322,11 @@ def test_a_process_measures_what_this_one_finds(bar, tmp_path):
     assert 5e6 < found["baseline_bytes"] <= found["peak_bytes"] < 8 * 2**30
 
 
-def test_a_run_over_its_time_or_memory_is_ended(bar, tmp_path):
+def test_a_run_over_its_time_or_memory_is_ended(bar, measured):
     variant = Variant("scikit_fem", "superlu")
-    slow = measured(variant, bar, tmp_path, replace(LIMITS, seconds=1e-3))
+    slow = measured(variant, bar, replace(LIMITS, seconds=1e-3))
     assert slow.status == "over time"
-    large = measured(variant, bar, tmp_path, replace(LIMITS, bytes=1e6))
+    large = measured(variant, bar, replace(LIMITS, bytes=1e6))
     assert large.status == "over memory"
 
 

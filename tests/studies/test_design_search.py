@@ -113,6 +113,13 @@ def test_limits_are_kept_at_the_better_level(found: SearchResult) -> None:
     assert min(left) == pytest.approx(0.0, abs=3e-4)
 
 
+@pytest.fixture
+def without_front(found: SearchResult, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweep no limit after the search."""
+    monkeypatch.setattr("fe_drivetrain.studies.design_search._FRONT", np.ones(1))
+
+
+@pytest.mark.usefixtures("without_front")
 def test_the_price_of_a_limit_is_what_tightening_it_costs(found: SearchResult) -> None:
     limit = max(found.prices, key=lambda name: found.prices[name])
     number = [str(one) for one in found.request.limits].index(limit)
@@ -135,6 +142,7 @@ def test_the_front_falls_as_the_limit_is_relaxed(found: SearchResult) -> None:
     assert (np.diff(values) <= 1e-6 * values[0]).all()
 
 
+@pytest.mark.usefixtures("without_front")
 def test_a_front_point_is_a_search_of_its_own(found: SearchResult) -> None:
     one = found.front[-1]
     others = [str(limit) for limit in found.request.limits if limit.name != one.limit.name]

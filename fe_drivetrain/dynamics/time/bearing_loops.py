@@ -10,12 +10,12 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from fe_drivetrain.bearing import kernels
 from fe_drivetrain.bearing.contact_forces import packed
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.numba_loops import inner_loop
 from fe_drivetrain.dynamics.time.law_loops import ZR, D, Z
 
 
@@ -78,7 +78,7 @@ def rolling_of(
     return Rolling(int(row), int(drift), np.array(seconds, dtype=np.float64), counts, pack)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def new_dampers(rolling: Rolling, bearings: Floats) -> None:  # pragma: no cover - compiled
     """Dampers of the next step, by the tangents at its beginning: (2, b, 5, 5), as overwritten."""
     for b in range(len(rolling.seconds)):
@@ -87,7 +87,7 @@ def new_dampers(rolling: Rolling, bearings: Floats) -> None:  # pragma: no cover
                 bearings[1, b, i, j] = rolling.seconds[b] * bearings[0, b, i, j]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _one(pack: kernels.Packed, first: int, last: int) -> kernels.Packed:  # pragma: no cover
     """The rows of one bearing."""
     return kernels.Packed(
@@ -105,7 +105,7 @@ def _one(pack: kernels.Packed, first: int, last: int) -> kernels.Packed:  # prag
     )
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def bearing_forces(
     rolling: Rolling,
     by_rate: float,

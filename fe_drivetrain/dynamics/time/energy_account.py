@@ -7,21 +7,20 @@ turning the rows against the forces takes is put in by the clock.
 
 from __future__ import annotations
 
-from numba import njit
-
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.numba_loops import inner_loop, places
 from fe_drivetrain.dynamics.time.law_loops import DAMPER, DAMPING, DRIFT, ROW, SPRING, ZR, Laws, Z
 from fe_drivetrain.dynamics.time.turning_rows import Turning
 
-KINETIC, STRAIN, WORK, DISSIPATED, CLOCK = range(5)
+KINETIC, STRAIN, WORK, DISSIPATED, CLOCK = places(5)
 """Columns of the energies."""
 
-STORED, POWER, FOLLOWED, LOST = range(5, 9)
+STORED, POWER, FOLLOWED, LOST = places(4, 5)
 """Places behind the energies: stored by laws beyond the constant stiffness, power of their clock,
 power of dampers along errors, and power that dampers take where rows turn."""
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def product(x: Floats, y: Floats) -> float:  # pragma: no cover - compiled
     """Sum of x y."""
     total = 0.0
@@ -30,7 +29,7 @@ def product(x: Floats, y: Floats) -> float:  # pragma: no cover - compiled
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def powers_of_springs(
     turning: Turning, u: Floats, v: Floats, along: Floats
 ) -> tuple[float, float]:  # pragma: no cover - compiled
@@ -61,7 +60,7 @@ def powers_of_springs(
     return lost, clock
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def powers_of_laws(
     laws: Laws, y: Floats, of: Floats
 ) -> tuple[float, float]:  # pragma: no cover - compiled
@@ -83,7 +82,7 @@ def powers_of_laws(
     return lost, clock
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def powers_of_bearings(
     turning: Turning, u: Floats, v: Floats, loads: Floats, resisted: Floats
 ) -> tuple[float, float]:  # pragma: no cover - compiled

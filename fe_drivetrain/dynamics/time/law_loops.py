@@ -9,27 +9,27 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.numba_loops import inner_loop, places
 
-ROW, ANGLE, DRIFT, WAVE, ERROR = range(5)
+ROW, ANGLE, DRIFT, WAVE, ERROR = places(5)
 """Numbers of a law: places of its elongation, its phase and its drift among the rows, or -1; wave
 and error."""
 
 (
     STIFFNESS, DAMPING, LOWER, UPPER, EXPONENT, OFFSET,
     PHASE, FREQUENCY, POWER, SPEED, ERROR_PHASE, ERROR_TURNS,
-) = range(12)  # fmt: skip
+) = places(12)  # fmt: skip
 """Values of a law, as `SpringLaws` has them."""
 
 
-Z, NEW, ZR, RATE, D, D1, ZA, BASE, FREE, RESIDUAL, CHANGE, SCALE = range(12)
+Z, NEW, ZR, RATE, D, D1, ZA, BASE, FREE, RESIDUAL, CHANGE, SCALE = places(12)
 """Vectors of r, at the beginning and the end of a step: values of the rows, their rates, forces
 beyond the matrices; accelerations and values at the beginning by the rows of the end; values that
 the matrix gives, residual, change, and maximum so far."""
 
-DAMPER, DAMPER1, SPRING, DAMPS = range(4)
+DAMPER, DAMPER1, SPRING, DAMPS = places(4)
 """Vectors of q: parts of d of dampers at the beginning and the end of a step, forces, contact."""
 
 
@@ -46,7 +46,7 @@ class Laws(NamedTuple):
     driven: bool
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _wave(table: Floats, phase: float) -> tuple[float, float, float]:  # pragma: no cover
     """A wave at a phase, and its first and second derivative by the phase."""
     p = len(table)
@@ -61,7 +61,7 @@ def _wave(table: Floats, phase: float) -> tuple[float, float, float]:  # pragma:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _factor(
     laws: Laws, i: int, phase: float
 ) -> tuple[float, float, float]:  # pragma: no cover - compiled
@@ -71,7 +71,7 @@ def _factor(
     return _wave(laws.waves[laws.numbers[WAVE, i]], phase)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _error(
     laws: Laws, i: int, phase: float
 ) -> tuple[float, float, float]:  # pragma: no cover - compiled
@@ -85,13 +85,13 @@ def _error(
     return e, r * slope, r * r * bend
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _phase(laws: Laws, i: int, t: float, y: Floats, z: int) -> float:  # pragma: no cover - compiled
     at = laws.values[PHASE, i] + laws.values[FREQUENCY, i] * t
     return float(at + y[z, laws.numbers[ANGLE, i]] if laws.numbers[ANGLE, i] >= 0 else at)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _potential(laws: Laws, i: int, x: float) -> tuple[float, float, float]:  # pragma: no cover
     """Phi and its first and second derivative by the elongation x."""
     p, lower, upper = laws.values[EXPONENT, i], laws.values[LOWER, i], laws.values[UPPER, i]
@@ -109,7 +109,7 @@ def _potential(laws: Laws, i: int, x: float) -> tuple[float, float, float]:  # p
     return force * side / (p + 1.0), sign * force, (p * force / side if side > 0.0 else 0.0)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def touching(laws: Laws, t: float, y: Floats, of: Floats) -> None:  # pragma: no cover
     """Into ``of[DAMPS]``: 1 of each law in contact at values ``y[Z]`` of the rows, else 0."""
     for i in range(of.shape[1]):
@@ -119,7 +119,7 @@ def touching(laws: Laws, t: float, y: Floats, of: Floats) -> None:  # pragma: no
         of[DAMPS, i] = 1.0 if lower == upper or x > upper or x < lower else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _damper(
     laws: Laws, i: int, rate: float, damps: float, along_error: float
 ) -> tuple[float, float]:  # pragma: no cover - compiled
@@ -134,7 +134,7 @@ def _damper(
     return force, by_rate
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def law_forces(
     laws: Laws, t: float, by_rate: float, at: int, y: Floats, of: Floats, tangent: Floats
 ) -> tuple[float, float, float]:  # pragma: no cover
@@ -194,7 +194,7 @@ def law_forces(
     return energy, power, followed
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _on_phase(
     laws: Laws, i: int, state: tuple[float, ...], tangent: Floats
 ) -> float:  # pragma: no cover - compiled

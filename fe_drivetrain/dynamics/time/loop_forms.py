@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.numba_loops import places
 from fe_drivetrain.dynamics.time.law_loops import Laws
 from fe_drivetrain.dynamics.time.turning_rows import Matrices
 
@@ -42,7 +43,7 @@ class Span(NamedTuple):
     tolerance: float
 
 
-PHASE_ROW, MOVED_ROW, TILTED_ROW = range(3)
+PHASE_ROW, MOVED_ROW, TILTED_ROW = places(3)
 """Kinds of rows: phases, displacements and tilts of bearings."""
 
 
@@ -80,7 +81,7 @@ class Kept(NamedTuple):
 (
     U, V, A, U0, V0, A0,
     MV, CV, KU, DU, OUTSIDE, OUTSIDE0, INSIDE, STEP, RHS, TERM, TERM2,
-) = range(17)  # fmt: skip
+) = places(17)  # fmt: skip
 """Vectors of n: displacements, velocities, accelerations now and before the last step; M v, C v,
 K u, the drift of dampers; loads at the end and the beginning of a step, forces inside, the step,
 and what is summed."""

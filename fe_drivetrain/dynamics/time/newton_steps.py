@@ -5,9 +5,8 @@ z = z_free - (1 - a_f) S d(z, z'),    S = R A^-1 R^T
 
 from __future__ import annotations
 
-from numba import njit
-
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.numba_loops import inner_loop
 from fe_drivetrain.dynamics.time.bearing_loops import Rolling, bearing_forces
 from fe_drivetrain.dynamics.time.energy_account import FOLLOWED, POWER, STORED
 from fe_drivetrain.dynamics.time.law_loops import (
@@ -29,7 +28,7 @@ from fe_drivetrain.dynamics.time.loop_forms import MOVED_ROW, PHASE_ROW, TILTED_
 MAX_STEPS = 40
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _solve(A: Floats, y: Floats) -> None:  # pragma: no cover - compiled
     """A^-1 y[CHANGE] into it, A overwritten: Gauss with row pivots; small, without a library."""
     n = y.shape[1]
@@ -54,7 +53,7 @@ def _solve(A: Floats, y: Floats) -> None:  # pragma: no cover - compiled
         y[CHANGE, k] /= A[k, k]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _forces_at(
     model: Model, rolling: Rolling | None, t: float, w: Work, tangent: Floats
 ) -> None:  # pragma: no cover - compiled
@@ -69,7 +68,7 @@ def _forces_at(
         bearing_forces(rolling, b[1], 1, y, tangent, w.bearings, w.resisted, w.scratch)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _residual(share: float, S: Floats, y: Floats) -> None:  # pragma: no cover - compiled
     for i in range(len(S)):
         y[RESIDUAL, i] = y[FREE, i] - y[NEW, i]
@@ -77,7 +76,7 @@ def _residual(share: float, S: Floats, y: Floats) -> None:  # pragma: no cover -
             y[RESIDUAL, i] -= share * S[i, j] * y[D1, j]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _jacobian(
     share: float, S: Floats, tangent: Floats, A: Floats
 ) -> None:  # pragma: no cover - compiled
@@ -94,7 +93,7 @@ def _jacobian(
                     A[i, k] += share * S[i, j] * by
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _unbalance(kinds: Floats, y: Floats) -> float:  # pragma: no cover - compiled
     """Maximum residual over what its value has been."""
     most = 0.0
@@ -104,7 +103,7 @@ def _unbalance(kinds: Floats, y: Floats) -> float:  # pragma: no cover - compile
     return most
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def scales(kinds: Floats, y: Floats) -> None:  # pragma: no cover - compiled
     """Maximum of each value so far; of bearings that of all motions, and of all tilts."""
     moved = tilted = 0.0
@@ -119,7 +118,7 @@ def scales(kinds: Floats, y: Floats) -> None:  # pragma: no cover - compiled
             y[SCALE, i] = max(tilted, moved)  # a metre away
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def newton(
     model: Model, rolling: Rolling | None, t: float, tolerance: float, w: Work, counts: Ints
 ) -> None:  # pragma: no cover - compiled

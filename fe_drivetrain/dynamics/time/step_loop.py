@@ -17,6 +17,7 @@ import numpy as np
 from numba import njit
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.numba_loops import inner_loop
 from fe_drivetrain.dynamics.time.bearing_loops import Rolling, bearing_forces, new_dampers
 from fe_drivetrain.dynamics.time.energy_account import (
     CLOCK,
@@ -86,14 +87,14 @@ from fe_drivetrain.dynamics.time.turning_rows import (
 MANY = 12
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _by_library(
     matrices: Floats, k: int, x: Floats, i: int, y: Floats, j: int
 ) -> None:  # pragma: no cover - compiled
     np.dot(matrices[k], x[i], y[j])
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _times(
     matrices: Floats, k: int, x: Floats, i: int, y: Floats, j: int
 ) -> None:  # pragma: no cover - compiled
@@ -108,7 +109,7 @@ def _times(
         y[j, row] = total
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _product(x: Floats, i: int, y: Floats, j: int) -> float:  # pragma: no cover - compiled
     """Sum of ``x[i] y[j]``."""
     total = 0.0
@@ -117,14 +118,14 @@ def _product(x: Floats, i: int, y: Floats, j: int) -> float:  # pragma: no cover
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _copy(x: Floats, i: int, y: Floats, j: int) -> None:  # pragma: no cover - compiled
     """``x[i]`` into ``y[j]``."""
     for k in range(x.shape[1]):
         y[j, k] = x[i, k]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _load(
     drive: Drive, t: float, place: int, w: Work, into: int
 ) -> int:  # pragma: no cover - compiled
@@ -146,7 +147,7 @@ def _load(
     return place
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _free_step(
     model: Model, turning: Turning | None, t: float, w: Work
 ) -> None:  # pragma: no cover - compiled
@@ -183,7 +184,7 @@ def _free_step(
             y[FREE, i] += y[BASE, i]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _inside(model: Model, w: Work, into: int) -> None:  # pragma: no cover - compiled
     """Forces of springs, dampers, laws and bearings at the beginning of a step, into a vector."""
     m, x, y = model.matrices, w.vectors, w.rows
@@ -195,7 +196,7 @@ def _inside(model: Model, w: Work, into: int) -> None:  # pragma: no cover - com
                 x[into, i] += m.rows[0, j, i] * y[D, j]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _hold(held: Floats, x: Floats, i: int) -> None:  # pragma: no cover - compiled
     """Nothing of a vector along motions that are held."""
     for k in range(held.shape[1]):
@@ -206,7 +207,7 @@ def _hold(held: Floats, x: Floats, i: int) -> None:  # pragma: no cover - compil
             x[i, j] -= along * held[0, k, j]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _powers(model: Model, turning: Turning, w: Work) -> None:  # pragma: no cover - compiled
     """Power that dampers take and the clock gives, where rows turn."""
     x, y, sums, many = w.vectors, w.rows, w.sums, w.resisted.shape[1]
@@ -221,7 +222,7 @@ def _powers(model: Model, turning: Turning, w: Work) -> None:  # pragma: no cove
     sums[0, POWER] += clock
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _end_step(model: Model, w: Work) -> float:  # pragma: no cover - compiled
     """Motion at the end of a step; what constant dampers took."""
     m, b, x, y, sums = model.matrices, model.matrices.coefficients, w.vectors, w.rows, w.sums
@@ -250,7 +251,7 @@ def _end_step(model: Model, w: Work) -> float:  # pragma: no cover - compiled
     return taken + 0.5 * _product(x, CV, x, STEP)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _end_rows(model: Model, w: Work) -> float:  # pragma: no cover - compiled
     """Rows at the end of a step; what dampers of laws and bearings took."""
     x, y, of = w.vectors, w.rows, w.laws
@@ -271,7 +272,7 @@ def _end_rows(model: Model, w: Work) -> float:  # pragma: no cover - compiled
     return taken
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _begin(
     model: Model, rolling: Rolling | None, turning: Turning | None, t: float, w: Work
 ) -> None:  # pragma: no cover - compiled
@@ -302,7 +303,7 @@ def _begin(
         _powers(model, turning, w)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _record(
     model: Model, k: int, t: float, w: Work, kept: Kept
 ) -> None:  # pragma: no cover - compiled
@@ -330,7 +331,7 @@ def _record(
         _times(model.matrices.held, 1, x, TERM, kept.gripped, k)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _turned(model: Model, turning: Turning, w: Work) -> None:  # pragma: no cover - compiled
     """Losses of a step whose rows turn."""
     _times(model.matrices.squares, DRIFT, w.vectors, U, w.vectors, DU)
@@ -338,7 +339,7 @@ def _turned(model: Model, turning: Turning, w: Work) -> None:  # pragma: no cove
     w.sums[0, DISSIPATED] += 0.5 * model.matrices.dt * (w.sums[1, LOST] + w.sums[0, LOST])
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _stops(stop: Stop, x: Floats) -> bool:  # pragma: no cover - compiled
     """Whether an event has come."""
     for i in range(len(stop.signs)):

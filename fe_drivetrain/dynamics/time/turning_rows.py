@@ -14,8 +14,9 @@ import numpy as np
 from numba import njit
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.numba_loops import inner_loop, places
 
-MASS, DAMPING, STIFFNESS, INVERSE, DRIFT = range(5)
+MASS, DAMPING, STIFFNESS, INVERSE, DRIFT = places(5)
 """Square matrices: of the equations, the inverse of A, and what dampers have of displacements where
 rows turn."""
 
@@ -60,7 +61,7 @@ class Turning(NamedTuple):
     slopes: Floats
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _sum(
     orders: Floats, waves: Floats, t: float, now: Floats, slopes: Floats
 ) -> None:  # pragma: no cover - compiled
@@ -74,7 +75,7 @@ def _sum(
     np.dot(slope, waves, slopes)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def turn(turning: Turning, matrices: Matrices, t: float) -> None:  # pragma: no cover - compiled
     """Rows and matrices at a time, overwritten."""
     b, squares, springs = matrices.coefficients, matrices.squares, turning.springs
@@ -110,7 +111,7 @@ def turn(turning: Turning, matrices: Matrices, t: float) -> None:  # pragma: no 
     constrain(matrices)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _place(of: Ints, rows: Floats, R: Floats) -> None:  # pragma: no cover - compiled
     """Rows where they are among the unknowns."""
     for k in range(of.shape[1]):
