@@ -124,7 +124,7 @@ def _exudyn_run(exudyn: Any, problem: Problem, kind: Any) -> Solve:
         time.numberOfSteps = steps * problem.records
         time.endTime = problem.duration
         time.verboseMode = 0
-        time.newton.useModifiedNewton = not problem.varies
+        time.newton.useModifiedNewton = True
         time.generalizedAlpha.spectralRadius = 1.0
         settings.linearSolverType = exudyn.LinearSolverType.EXUdense
         settings.solutionSettings.writeSolutionToFile = False
@@ -306,10 +306,11 @@ def _ross_exponentials(problem: Problem) -> Solve:
 
     def prepared(steps: int) -> Callable[[], Floats]:
         times, F = _forces(problem, steps)
+        F = F[:, order]
 
         def run() -> Floats:
             with contextlib.redirect_stdout(io.StringIO()):
-                found = rotor.time_response(SPEED, F[:, order], times)[1]
+                found = rotor.time_response(SPEED, F, times)[1]
             return np.asarray(found[::steps, np.argsort(order)])
 
         return run

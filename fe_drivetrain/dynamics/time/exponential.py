@@ -8,8 +8,7 @@ they are the polynomial through their values at Lobatto's four nodes c_i:
 
 (exponential collocation: Hochbruck and Ostermann 2005). The error falls with the sixth power of the
 step where laws are smooth, and there is none without laws, whatever the step. Values z_i of the
-rows are found by repeated insertion, which converges where a step is short against the periods that
-the varying part of a stiffness alone would give.
+rows are found by Newton's method, which leaves out how d changes with the rates.
 """
 
 from __future__ import annotations
@@ -26,17 +25,18 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.dynamics.bodies.equations import Equations, Loads
-from fe_drivetrain.dynamics.time.law_loops import Laws, Z, ZR, D, law_forces, touching
+from fe_drivetrain.dynamics.time.law_loops import CHANGE, ZR, D, Laws, Z, law_forces, touching
 from fe_drivetrain.dynamics.time.mechanism import mechanism_of
 from fe_drivetrain.dynamics.time.motion import State, at_rest
+from fe_drivetrain.dynamics.time.newton_steps import MAX_STEPS, solve
 from fe_drivetrain.dynamics.time.schemes import AVERAGE
 from fe_drivetrain.dynamics.time.stepper import TOLERANCE, prepared
 
 NODES = np.array([0.0, 0.5 - np.sqrt(0.05), 0.5 + np.sqrt(0.05), 1.0])
 """Lobatto's nodes in a step; the first of a step is the last of the one before."""
 
-#: Insertions after which a step counts as not converged.
-MAX_INSERTIONS = 60
+FREE, FOUND = range(2)
+"""Vectors of rows and rates at nodes: what they are without laws, and what laws take from it."""
 
 #: Columns from which a library's product is faster than a loop.
 MANY = 12
@@ -52,16 +52,16 @@ class ExponentialMotion:
         Times (k,) of the records [s].
     q, velocity : Floats
         Displacements and velocities (k, n).
-    insertions : int
-        Number of insertions into the laws, all.
+    iterations : int
+        Newton steps, all.
     not_converged : int
-        Steps in which they did not converge: shorter ones are needed.
+        Steps in which Newton's method did not converge.
     """
 
     times: Floats
     q: Floats
     velocity: Floats
-    insertions: int
+    iterations: int
     not_converged: int
 
     __repr__ = short_repr
@@ -81,6 +81,27 @@ class Weights(NamedTuple):
     free: Floats
     mutual: Floats
     ahead: Floats
+
+
+class Memory(NamedTuple):
+    """Memory of the loop at s nodes of r rows with q laws.
+
+    ``values`` (s, 12, r) and ``laws`` (4, q) as `law_forces` takes them, ``tangents`` (s, r, r);
+    ``forces`` (s r), node by node; ``vectors`` (2, 2 r (s - 1)) as `FREE` and `FOUND`; ``scale``
+    (r,) maximum of each row so far; ``left`` (12, r (s - 1)) and ``square`` of Newton's method;
+    ``last`` (s,); ``nodes`` (s,).
+    """
+
+    values: Floats
+    laws: Floats
+    tangents: Floats
+    forces: Floats
+    vectors: Floats
+    scale: Floats
+    left: Floats
+    square: Floats
+    last: Floats
+    nodes: Floats
 
 
 def exponential_steps(
@@ -108,7 +129,7 @@ def exponential_steps(
     every : int
         Steps from record to record.
     tolerance : float
-        Change of an elongation by an insertion over its maximum so far.
+        Tolerance of Newton's method: what is left of an elongation over its maximum so far.
 
     Returns
     -------
@@ -126,8 +147,6 @@ def exponential_steps(
         raise InputError(f"every is {every} steps but must be at least 1: change it")
     model = prepared(mechanism_of(equations, loads), dt, AVERAGE).model
     rows = np.ascontiguousarray(model.matrices.rows[0])
-    with one_blas_thread():
-        weights = _weights(equations, loads, rows, model.matrices.constant, float(dt))
     begin = start or at_rest(equations)
     steps, n, p = round(duration / dt), len(equations.mass), loads.histories.shape[1]
     x = np.concatenate([begin.q, dt * begin.velocity, np.zeros(2 * p), np.ones(1)])
@@ -135,13 +154,33 @@ def exponential_steps(
     counts: Ints = np.zeros(2, dtype=np.int64)
     span = float(begin.time), steps, int(every), float(tolerance)
     tables = np.ascontiguousarray(loads.times), np.ascontiguousarray(loads.histories)
-    values = np.zeros((len(NODES), 12, len(rows)))
-    values[0, Z], values[0, ZR] = rows @ begin.q, rows @ begin.velocity
+    memory = _memory(rows, model.laws, begin)
     with one_blas_thread():
-        _march(span, weights, model.laws, NODES, tables, x, values, records, counts)
+        weights = _weights(equations, loads, rows, model.matrices.constant, float(dt))
+        _march(span, weights, model.laws, tables, x, memory, records, counts)
     times = begin.time + dt * every * np.arange(len(records), dtype=np.float64)
     return ExponentialMotion(
         times, records[:, :n], records[:, n:] / dt, int(counts[0]), int(counts[1])
+    )
+
+
+def _memory(rows: Floats, laws: Laws, begin: State) -> Memory:
+    """Memory, with the values of the rows at the beginning."""
+    s, r = len(NODES), len(rows)
+    many = r * (s - 1)
+    values = np.zeros((s, 12, r))
+    values[0, Z], values[0, ZR] = rows @ begin.q, rows @ begin.velocity
+    return Memory(
+        values,
+        np.zeros((4, laws.values.shape[1])),
+        np.zeros((s, r, r)),
+        np.zeros(s * r),
+        np.zeros((2, 2 * many)),
+        np.abs(values[0, Z]),
+        np.zeros((12, many)),
+        np.zeros((many, many)),
+        np.zeros(s),
+        NODES,
     )
 
 
@@ -226,48 +265,105 @@ def _loads(
 
 
 @njit(cache=True, error_model="numpy")
-def _forces(
-    laws: Laws, t: float, values: Floats, i: int, of: Floats, tangent: Floats, d: Floats
-) -> None:  # pragma: no cover - compiled
-    """Forces of laws at node i into d."""
-    r = tangent.shape[0]
-    y = values[i]
-    law_forces(laws, t, 0.0, int(np.int64(0)), y, of, tangent)
+def _forces(laws: Laws, t: float, i: int, m: Memory) -> None:  # pragma: no cover - compiled
+    """Forces of laws at node i, and their tangents."""
+    r, y = m.values.shape[2], m.values[i]
+    law_forces(laws, t, 0.0, int(np.int64(0)), y, m.laws, m.tangents[i])
     for k in range(r):
-        d[i * r + k] = y[D, k]
+        m.forces[i * r + k] = y[D, k]
 
 
 @njit(cache=True, error_model="numpy")
-def _insert(
+def _predict(w: Weights, m: Memory) -> None:  # pragma: no cover - compiled
+    """Forces at the nodes as those of the step before go on."""
+    s, r = m.values.shape[0], m.values.shape[2]
+    for k in range(r):
+        for i in range(s):
+            m.last[i] = m.forces[i * r + k]
+        for i in range(1, s):
+            m.forces[i * r + k] = 0.0
+            for j in range(s):
+                m.forces[i * r + k] += w.ahead[i, j] * m.last[j]
+
+
+@njit(cache=True, error_model="numpy")
+def _rows(w: Weights, values: Floats, d: Floats, v: Floats) -> None:  # pragma: no cover - compiled
+    """Values of the rows and their rates at all nodes but the first, from forces d."""
+    r = values.shape[2]
+    _times(w.mutual, d, v[FOUND])
+    for i in range(1, values.shape[0]):
+        first = 2 * r * (i - 1)
+        for k in range(r):
+            values[i, Z, k] = v[FREE, first + k] - v[FOUND, first + k]
+            values[i, ZR, k] = (v[FREE, first + r + k] - v[FOUND, first + r + k]) / w.step
+
+
+@njit(cache=True, error_model="numpy")
+def _unbalance(
+    w: Weights, values: Floats, d: Floats, v: Floats, scale: Floats, left: Floats
+) -> float:  # pragma: no cover - compiled
+    """What is left of each value of the rows into ``left[CHANGE]``; the most over its size."""
+    r, most = values.shape[2], 0.0
+    _times(w.mutual, d, v[FOUND])
+    for i in range(1, values.shape[0]):
+        first = 2 * r * (i - 1)
+        for k in range(r):
+            z = values[i, Z, k]
+            rest = v[FREE, first + k] - v[FOUND, first + k] - z
+            left[CHANGE, r * (i - 1) + k] = rest
+            scale[k] = max(scale[k], abs(z))
+            if rest != 0.0:
+                most = max(most, abs(rest) / (scale[k] if scale[k] > 0.0 else abs(rest)))
+    return most
+
+
+@njit(cache=True, error_model="numpy")
+def _jacobian(w: Weights, tangents: Floats, A: Floats) -> None:  # pragma: no cover - compiled
+    """I + weights times tangents, into A."""
+    r, nodes = tangents.shape[1], tangents.shape[0] - 1
+    for row in range(A.shape[0]):
+        for column in range(A.shape[0]):
+            A[row, column] = 1.0 if row == column else 0.0
+    for i in range(1, nodes + 1):
+        for k in range(r):
+            for m in range(r):
+                by = tangents[i, k, m]
+                if by != 0.0:
+                    for j in range(nodes):
+                        for row in range(r):
+                            A[r * j + row, r * (i - 1) + m] += (
+                                w.mutual[2 * r * j + row, r * i + k] * by
+                            )
+
+
+@njit(cache=True, error_model="numpy")
+def _newton(
     laws: Laws,
     t: float,
-    h: float,
-    nodes: Floats,
-    bounds: tuple[Floats, float],
-    memory: tuple[Floats, Floats, Floats, Floats, Floats, Floats],
-    mutual: Floats,
-) -> int:  # pragma: no cover - compiled
-    """Insert rows into laws and forces into rows; how often, negative where in vain."""
-    values, of, tangent, d, free, found = memory
-    scale, tolerance = bounds
-    r, s = tangent.shape[0], len(nodes)
-    for count in range(1, MAX_INSERTIONS + 1):
-        _times(mutual, d, found)
-        change = 0.0
+    tolerance: float,
+    w: Weights,
+    m: Memory,
+    counts: Ints,
+) -> None:  # pragma: no cover - compiled
+    """Forces of laws at the nodes of a step, by Newton's method on the values of the rows there."""
+    s, r = m.values.shape[0], m.values.shape[2]
+    _rows(w, m.values, m.forces, m.vectors)
+    for _ in range(MAX_STEPS):
         for i in range(1, s):
-            first = 2 * r * (i - 1)
+            _forces(laws, t + m.nodes[i] * w.step, i, m)
+        counts[0] += 1
+        if _unbalance(w, m.values, m.forces, m.vectors, m.scale, m.left) <= tolerance:
+            return
+        _jacobian(w, m.tangents, m.square)
+        solve(m.square, m.left)
+        for i in range(1, s):
             for k in range(r):
-                z = free[first + k] - found[first + k]
-                scale[k] = max(scale[k], abs(z))
-                if scale[k] > 0.0:
-                    change = max(change, abs(z - values[i, Z, k]) / scale[k])
-                values[i, Z, k] = z
-                values[i, ZR, k] = (free[first + r + k] - found[first + r + k]) / h
-        for i in range(1, s):
-            _forces(laws, t + nodes[i] * h, values, i, of, tangent, d)
-        if count > 1 and change <= tolerance:
-            return count
-    return -MAX_INSERTIONS
+                for column in range(r):
+                    m.forces[r * i + k] += (
+                        m.tangents[i, k, column] * m.left[CHANGE, r * (i - 1) + column]
+                    )
+        _rows(w, m.values, m.forces, m.vectors)
+    counts[1] += 1
 
 
 @njit(cache=True, error_model="numpy")
@@ -275,57 +371,41 @@ def _march(
     span: tuple[float, int, int, float],
     w: Weights,
     laws: Laws,
-    nodes: Floats,
     tables: tuple[Floats, Floats],
     x: Floats,
-    values: Floats,
+    m: Memory,
     records: Floats,
     counts: Ints,
 ) -> None:  # pragma: no cover - compiled
     """All steps; records of q and h q' in turn."""
     begin, steps, every, tolerance = span
-    h, s, r, states = w.step, len(nodes), values.shape[2], w.end.shape[0]
-    p = tables[1].shape[1]
+    s, r, states, p = m.values.shape[0], m.values.shape[2], w.end.shape[0], tables[1].shape[1]
     end, by_laws = np.zeros(states), np.zeros(states)
-    d, last, tangent, scale = np.zeros(s * r), np.zeros(s), np.zeros((r, r)), np.zeros(r)
-    free, found = np.zeros(w.free.shape[0]), np.zeros(w.free.shape[0])
-    of = np.zeros((4, laws.values.shape[1]))
     place = _loads(tables, begin, int(np.int64(0)), x, states + p)
-    for k in range(r):
-        scale[k] = abs(values[0, Z, k])
     if r > 0:
-        touching(laws, begin, values[0], of)
-        _forces(laws, begin, values, int(np.int64(0)), of, tangent, d)
+        touching(laws, begin, m.values[0], m.laws)
+        _forces(laws, begin, int(np.int64(0)), m)
         for i in range(r, s * r):
-            d[i] = d[i % r]
+            m.forces[i] = m.forces[i % r]
     records[0] = x[:states]
     for step in range(1, steps + 1):
-        t = begin + (step - 1) * h
+        t = begin + (step - 1) * w.step
         for j in range(p):
             x[states + j] = x[states + p + j]
-        place = _loads(tables, begin + step * h, place, x, states + p)
+        place = _loads(tables, begin + step * w.step, place, x, states + p)
         _times(w.end, x, end)
         if r > 0:
-            touching(laws, t, values[0], of)
-            for k in range(r):
-                for i in range(s):
-                    last[i] = d[i * r + k]
-                for i in range(1, s):
-                    d[i * r + k] = 0.0
-                    for j in range(s):
-                        d[i * r + k] += w.ahead[i, j] * last[j]
-            _forces(laws, t, values, int(np.int64(0)), of, tangent, d)
-            _times(w.free, x, free)
-            memory = values, of, tangent, d, free, found
-            count = _insert(laws, t, h, nodes, (scale, tolerance), memory, w.mutual)
-            counts[0] += abs(count)
-            if count < 0:
-                counts[1] += 1
-            _times(w.end_laws, d, by_laws)
+            touching(laws, t, m.values[0], m.laws)
+            _predict(w, m)
+            _forces(laws, t, int(np.int64(0)), m)
+            _times(w.free, x, m.vectors[FREE])
+            _newton(laws, t, tolerance, w, m, counts)
+            _times(w.end_laws, m.forces, by_laws)
             for j in range(states):
                 end[j] -= by_laws[j]
             for k in range(r):
-                values[0, Z, k], values[0, ZR, k] = values[s - 1, Z, k], values[s - 1, ZR, k]
+                m.values[0, Z, k] = m.values[s - 1, Z, k]
+                m.values[0, ZR, k] = m.values[s - 1, ZR, k]
         for j in range(states):
             x[j] = end[j]
         if step % every == 0:
