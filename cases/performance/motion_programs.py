@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
@@ -38,7 +39,7 @@ from fe_drivetrain.cases.performance.motion_problems import (
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.arrays import Ints
 from fe_drivetrain.common.short_repr import short_repr
-from fe_drivetrain.dynamics import AVERAGE, exponential_steps, integrate
+from fe_drivetrain.dynamics import AVERAGE, Loads, exponential_steps, integrate
 from fe_drivetrain.export.programs.exudyn_system import exudyn_version
 from fe_drivetrain.export.programs.ross_rotor import FROM_PROJECT, ross_version
 
@@ -91,6 +92,18 @@ def own_methods(problem: Problem) -> list[Method]:
 # --- Exudyn ---
 
 
+def fast_exudyn_version() -> str:
+    """The version of Exudyn, whose build without checks of ranges is taken if none is loaded yet.
+
+    Raises
+    ------
+    MissingToolError
+        Exudyn is not installed.
+    """
+    sys.__dict__.setdefault("exudynFast", True)
+    return exudyn_version()
+
+
 def exudyn_methods(problem: Problem) -> list[Method]:
     """Generalised alpha without numerical damping, and explicit methods of order 4, 5 and 6.
 
@@ -99,7 +112,7 @@ def exudyn_methods(problem: Problem) -> list[Method]:
     MissingToolError
         Exudyn is not installed.
     """
-    exudyn_version()
+    fast_exudyn_version()
     exudyn = import_module("exudyn")
     kinds = exudyn.DynamicSolverType
     return [
@@ -146,7 +159,7 @@ def _exudyn_run(exudyn: Any, problem: Problem, kind: Any) -> Solve:
 def _fill(exudyn: Any, system: Any, problem: Problem) -> tuple[Any, Floats, list[Any]]:
     """The problem in Exudyn's system; the sensor of its coordinates z, T of q = T z, functions."""
     items, e = import_module("exudyn.itemInterface"), problem.equations
-    n, loads = len(e.mass), problem.loads
+    n = len(e.mass)
     T, meshes = coordinates(problem) if problem.varies else (np.eye(n), np.zeros(0, np.int64))
     node = system.AddNode(
         items.NodeGenericODE2(
@@ -164,41 +177,10 @@ def _fill(exudyn: Any, system: Any, problem: Problem) -> tuple[Any, Floats, list
             dampingMatrix=T.T @ e.C @ T,
         )
     )
-
-    def marker(of: Any, coordinate: int) -> Any:
-        return system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=of, coordinate=coordinate))
-
-    kept: list[Any] = []  # a symbolic function lives as long as it is kept
-
-    def symbolic(function: Any, name: str, kind: str) -> Any:
-        made = import_module("exudyn.advancedUtilities").CreateSymbolicUserFunction(
-            system, function=function, userFunctionName=name, itemTypeName=kind
-        )
-        kept.append(made)
-        return made
-
-    force = T.T @ loads.patterns[:, 0]
-    torque = _history(exudyn.symbolic, loads.times, loads.histories[:, 0])
-    for coordinate in np.flatnonzero(np.abs(force) > 1e-12 * np.abs(force).max()).tolist():
-        system.AddLoad(
-            items.LoadCoordinate(
-                markerNumber=marker(node, coordinate),
-                load=float(force[coordinate]),
-                loadUserFunction=symbolic(torque, "loadUserFunction", "LoadCoordinate"),
-            )
-        )
-    ground = marker(system.AddNode(items.NodePointGround()), 0)
-    for k, coordinate in enumerate(meshes.tolist()):
-        wave = _wave(exudyn.symbolic, problem.frequency, float(problem.phases[k]))
-        system.AddObject(
-            items.CoordinateSpringDamper(
-                markerNumbers=[ground, marker(node, coordinate)],
-                stiffness=float(problem.depth * problem.stiffness[k]),
-                springForceUserFunction=symbolic(
-                    wave, "springForceUserFunction", "ObjectConnectorCoordinateSpringDamper"
-                ),
-            )
-        )
+    functions = [
+        *_add_loads(exudyn, system, node, problem.loads, T),
+        *_add_meshes(exudyn, system, node, problem, meshes),
+    ]
     sensor = system.AddSensor(
         items.SensorNode(
             nodeNumber=node,
@@ -207,7 +189,56 @@ def _fill(exudyn: Any, system: Any, problem: Problem) -> tuple[Any, Floats, list
         )
     )
     system.Assemble()
-    return sensor, T, kept
+    return sensor, T, functions
+
+
+def _symbolic(system: Any, function: Any, name: str, kind: str) -> Any:
+    """A function as Exudyn's expression; it lives as long as it is kept."""
+    make = import_module("exudyn.advancedUtilities").CreateSymbolicUserFunction
+    return make(system, function=function, userFunctionName=name, itemTypeName=kind)
+
+
+def _marker(system: Any, node: Any, coordinate: int) -> Any:
+    items = import_module("exudyn.itemInterface")
+    return system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+
+
+def _add_loads(exudyn: Any, system: Any, node: Any, loads: Loads, T: Floats) -> list[Any]:
+    """Loads on the coordinates, and their functions."""
+    items, functions = import_module("exudyn.itemInterface"), []
+    force = T.T @ loads.patterns[:, 0]
+    torque = _history(exudyn.symbolic, loads.times, loads.histories[:, 0])
+    for coordinate in np.flatnonzero(np.abs(force) > 1e-12 * np.abs(force).max()).tolist():
+        functions.append(_symbolic(system, torque, "loadUserFunction", "LoadCoordinate"))
+        system.AddLoad(
+            items.LoadCoordinate(
+                markerNumber=_marker(system, node, coordinate),
+                load=float(force[coordinate]),
+                loadUserFunction=functions[-1],
+            )
+        )
+    return functions
+
+
+def _add_meshes(exudyn: Any, system: Any, node: Any, problem: Problem, meshes: Ints) -> list[Any]:
+    """What varies of each mesh, as a spring between its elongation and ground; their functions."""
+    items, functions = import_module("exudyn.itemInterface"), []
+    ground = _marker(system, system.AddNode(items.NodePointGround()), 0)
+    for k, coordinate in enumerate(meshes.tolist()):
+        wave = _wave(exudyn.symbolic, problem.frequency, float(problem.phases[k]))
+        functions.append(
+            _symbolic(
+                system, wave, "springForceUserFunction", "ObjectConnectorCoordinateSpringDamper"
+            )
+        )
+        system.AddObject(
+            items.CoordinateSpringDamper(
+                markerNumbers=[ground, _marker(system, node, coordinate)],
+                stiffness=float(problem.depth * problem.stiffness[k]),
+                springForceUserFunction=functions[-1],
+            )
+        )
+    return functions
 
 
 def _history(symbolic: Any, times: Floats, values: Floats) -> Any:
