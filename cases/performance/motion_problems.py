@@ -26,6 +26,7 @@ from fe_drivetrain.dynamics import (
     spring_laws,
     varying,
 )
+from fe_drivetrain.dynamics.bodies.equations import SpringLaws
 from fe_drivetrain.shafts.beam.frame import beam_stiffness, round_section
 
 STEEL = Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=0.0)
@@ -196,7 +197,7 @@ def _turning(mass: Floats, rows: Floats, stiffness: Floats) -> Floats:
 
 def _problem(
     title: str,
-    parts: tuple[Floats, object, Floats | None, Floats | None],
+    parts: tuple[Floats, SpringLaws, Floats | None, Floats | None],
     loads: Loads,
     given: tuple[float, int, float, float],
 ) -> Problem:

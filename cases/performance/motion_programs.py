@@ -280,7 +280,7 @@ def coordinates(problem: Problem) -> tuple[Floats, Ints]:
     places = free[pivots[: problem.meshes]]
     Z = np.eye(n)
     Z[places] = H
-    return np.linalg.inv(Z), places
+    return np.asarray(np.linalg.inv(Z), dtype=np.float64), np.asarray(places, dtype=np.int64)
 
 
 # --- ROSS ---
@@ -302,7 +302,7 @@ def ross_methods(problem: Problem) -> list[Method]:
 
 
 def _forces(problem: Problem, steps: int) -> tuple[Floats, Floats]:
-    times = RECORD / steps * np.arange(steps * problem.records + 1)
+    times = RECORD / steps * np.arange(steps * problem.records + 1, dtype=np.float64)
     return times, problem.loads.at(times)
 
 
