@@ -139,9 +139,9 @@ def _exudyn_run(exudyn: Any, problem: Problem, kind: Any) -> Solve:
         time.verboseMode = 0
         time.newton.useModifiedNewton = True
         time.generalizedAlpha.spectralRadius = 1.0
-        settings.linearSolverType = exudyn.LinearSolverType.EXUdense
-        settings.solutionSettings.writeSolutionToFile = False
-        settings.solutionSettings.sensorsWritePeriod = RECORD
+        settings.linearSolver.solverType = exudyn.LinearSolverType.EXUdense
+        settings.solution.file.write = False
+        settings.solution.sensors.writePeriod = RECORD
         settings.parallel.numberOfThreads = 1
 
         def run() -> Floats:
