@@ -71,43 +71,47 @@ def sweep(
     return found
 
 
-def seconds_at(points: Sequence[Point], error: float) -> tuple[float, float] | None:
-    """Median time and steps between records at an error: between two runs in logarithms.
+def seconds_at(points: Sequence[Point], error: float) -> tuple[Times, float] | None:
+    """Least, median and most time, and steps between records, at an error.
 
-    The time of the longest step that is stable, where its error is below; None where no run is.
+    Between two runs in logarithms; those of the longest step that is stable, where its error is
+    below; None where no run is.
     """
     if not points or min(p.error for p in points) > error:
         return None
     if points[0].error <= error:
-        return points[0].times.median, float(points[0].steps)
+        return spread(points[0].times), float(points[0].steps)
     for coarse, fine in pairwise(points):
         if coarse.error > error >= fine.error:
             share = np.log(coarse.error / error) / np.log(coarse.error / fine.error)
-            time, steps = (
-                float(a * (b / a) ** share)
-                for a, b in (
-                    (coarse.times.median, fine.times.median),
-                    (coarse.steps, fine.steps),
-                )
-            )
-            return time, steps
+
+            def between(one: float, other: float, share: float = share) -> float:
+                return float(one * (other / one) ** share)
+
+            ends = zip(spread(coarse.times).seconds, spread(fine.times).seconds, strict=True)
+            return Times(tuple(between(*of) for of in ends)), between(coarse.steps, fine.steps)
     return None
+
+
+def spread(times: Times) -> Times:
+    """Least, median and most alone."""
+    return Times((times.least, times.median, times.most))
 
 
 def at_equal_error(problem: Problem, sweeps: Sequence[Sequence[Point]]) -> list[Record]:
     """What the best method of each program takes for a second of motion, error by error."""
     found: list[Record] = []
     for error in ERRORS:
-        best: dict[str, tuple[float, float, Method]] = {}
+        best: dict[str, tuple[Times, float, Method]] = {}
         for points in sweeps:
             reached = seconds_at(points, error)
             if reached is None:
                 continue
             method = points[0].method
-            if method.program not in best or reached[0] < best[method.program][0]:
+            if method.program not in best or (reached[0].median < best[method.program][0].median):
                 best[method.program] = (*reached, method)
         own = best.get(OURS)
-        for program, (seconds, steps, method) in best.items():
+        for program, (times, steps, method) in best.items():
             found.append(
                 {
                     "problem": problem.title,
@@ -115,9 +119,11 @@ def at_equal_error(problem: Problem, sweeps: Sequence[Sequence[Point]]) -> list[
                     "program": program,
                     "its fastest method": method.name,
                     "step [µs]": 1e6 * RECORD / steps,
-                    "time for a second of motion [s]": seconds / problem.duration,
-                    "steps a second": steps * problem.records / seconds,
-                    "time over ours": seconds / own[0] if own else None,
+                    "least [s]": times.least / problem.duration,
+                    "time for a second of motion [s]": times.median / problem.duration,
+                    "most [s]": times.most / problem.duration,
+                    "steps a second": steps * problem.records / times.median,
+                    "time over ours": times.median / own[0].median if own else None,
                 }
             )
     return found

@@ -228,7 +228,8 @@ def show_goals(page: Page, compared: Sequence[Record]) -> None:
     page.section("At equal error")
     if compared:
         page.table(
-            "What each program takes by its fastest method, between two runs in logarithms",
+            "What each program takes for a second of motion by its fastest method, between two "
+            "runs in logarithms: least, median and most",
             compared,
         )
     peers = [row for row in compared if row["program"] != OURS and row[RATIO] is not None]

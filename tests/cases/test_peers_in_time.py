@@ -22,8 +22,12 @@ def points(program: str, *of: tuple[int, float, float]) -> list[Point]:
 
 def test_a_time_between_two_runs_is_interpolated_in_logarithms() -> None:
     runs = points(OURS, (1, 1e-2, 1.0), (10, 1e-4, 10.0))
-    assert_allclose(seconds_at(runs, 1e-3), (np.sqrt(10.0), np.sqrt(10.0)))
-    assert seconds_at(runs, 0.1) == (1.0, 1.0)
+    between, longest = seconds_at(runs, 1e-3), seconds_at(runs, 0.1)
+    assert between is not None
+    assert longest is not None
+    assert_allclose(between[0].seconds, [np.sqrt(10.0)] * 3)
+    assert between[1] == pytest.approx(np.sqrt(10.0))
+    assert (longest[0].median, longest[1]) == (1.0, 1.0)
     assert seconds_at(runs, 1e-5) is None
 
 
