@@ -52,9 +52,13 @@ def method(plan: Plan) -> list[str]:
         "solver again until the forces are balanced to 1e-7.",
         "On thin walls and slender shafts the question is that of spectral coarse spaces: "
         "`--set problems=[tube,slender] tools=[this_project.auto,this_project.schwarz,dolfinx] "
-        "sizes=[100000,1000000]` sets Schwarz beside PETSc's PCHPDDM (GenEO), adaptive PCBDDC and "
-        "GAMG. PETSc has a part for each process; PCHPDDM is left out where PETSc is built "
-        "without HPDDM, as Debian's is.",
+        "sizes=[100000,1000000]` sets this project's Schwarz method beside PETSc's, of which each "
+        "process has a part. Schwarz here is GenEO by itself (Spillane et al. 2014): the coarse "
+        "space comes from an eigenvalue problem of each patch. Of PETSc there are adaptive PCBDDC, "
+        "whose coarse space comes from eigenvalue problems of the borders between parts, and GAMG. "
+        "PCHPDDM, which is GenEO too, needs a PETSc that was configured with HPDDM and SLEPc: "
+        "Debian's is not, and PyPI has none that is built; where a PETSc has it, its row is "
+        "there.",
         "The wheels of MFEM and Kratos are taken as they are: MFEM's is serial, without hypre or "
         "SuiteSparse, so that its own solver is Gauss-Seidel and PARDISO is plugged in; Kratos's "
         "has neither PARDISO nor CHOLMOD, and counts assembly as solver, which it has in one call.",

@@ -142,6 +142,8 @@ from .time.base_motion import base_motion as base_motion
 from .time.base_motion import on_base as on_base
 from .time.base_motion import read_base_motion as read_base_motion
 from .time.brakes import Brake as Brake
+from .time.exponential import ExponentialMotion as ExponentialMotion
+from .time.exponential import exponential_steps as exponential_steps
 from .time.integration import Phase as Phase
 from .time.integration import integrate as integrate
 from .time.integration import transient as transient

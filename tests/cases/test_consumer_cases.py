@@ -14,6 +14,7 @@ NEEDS = {
     "export/nastran": ["pyNastran"],
     "export/ross_rotor": ["ross"],
     "export/wisdem": ["windIO", "wisdem"],
+    "performance/peers_in_time": ["exudyn", "ross"],
     "verification/calculix_bonded": ["ccx"],
     "verification/calculix_spherical": ["ccx"],
 }

@@ -29,7 +29,7 @@ MAX_STEPS = 40
 
 
 @inner_loop
-def _solve(A: Floats, y: Floats) -> None:  # pragma: no cover - compiled
+def solve(A: Floats, y: Floats) -> None:  # pragma: no cover - compiled
     """A^-1 y[CHANGE] into it, A overwritten: Gauss with row pivots; small, without a library."""
     n = y.shape[1]
     for k in range(n):
@@ -139,7 +139,7 @@ def newton(
         _jacobian(share, S, tangent, A)
         for i in range(r):
             y[CHANGE, i] = y[RESIDUAL, i]
-        _solve(A, y)
+        solve(A, y)
         count += 1
         length = 1.0 if bearings or count <= MAX_STEPS // 2 else 0.5
         converged = True

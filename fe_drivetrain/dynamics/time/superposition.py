@@ -16,6 +16,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import scaled_to_unit_diagonal
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies.equations import Equations, Loads
+from fe_drivetrain.dynamics.time.exponential import exponential_steps
 from fe_drivetrain.dynamics.time.motion import State, at_rest
 
 
@@ -149,28 +150,8 @@ def exact_steps(
         A spring has a law.
     """
     _without_laws(equations)
-    n = len(equations.mass)
-    inverse = np.linalg.inv(equations.mass)
-    one, zero = np.eye(n), np.zeros((n, n))
-    rate = np.block(
-        [
-            [zero, one, zero, zero],
-            [-inverse @ equations.K, -inverse @ equations.C, inverse, zero],
-            [zero, zero, zero, one / dt],
-            [zero, zero, zero, zero],
-        ]
-    )
-    step = linalg.expm(dt * rate)[: 2 * n]
-    begin = start or at_rest(equations)
-    steps = np.arange(round(duration / dt) + 1, dtype=np.float64)
-    t = np.asarray(begin.time + dt * steps)
-    s = equations.springs
-    f = loads.at(t) + s.rows.T @ (s.stiffness * s.offset)
-    y = np.empty((len(t), 2 * n))
-    y[0] = np.concatenate([begin.q, begin.velocity])
-    for k in range(len(t) - 1):
-        y[k + 1] = step @ np.concatenate([y[k], f[k], f[k + 1] - f[k]])
-    return t, y[:, :n], y[:, n:]
+    found = exponential_steps(equations, loads, duration, dt, start)
+    return found.times, found.q, found.velocity
 
 
 def energy_error(
