@@ -21,6 +21,9 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import fault_sentences
 from fe_drivetrain.common.strict_yaml import digits_as_text, no_truth_value
 
+MEMBERS = 24
+"""Insides that fit a page where no number of them is asked for."""
+
 _SINGLE, _DOUBLE = 0.6, (0.675, 1.005)
 """e times Y of rollers in one row, and times Y1 and Y2 in two: 1.5 tan(alpha) times 0.4, 0.45 and
 0.67 cot(alpha) (ISO 281, table 8)."""
@@ -118,6 +121,13 @@ class CataloguePage(BaseModel):
     )
     limiting_speed_rpm: float | None = Field(
         default=None, gt=0, description="that the catalogue allows [1/min]"
+    )
+    inside: int | None = Field(
+        default=None,
+        ge=0,
+        lt=MEMBERS,
+        description=f"number of one of the {MEMBERS} insides that fit the page; where left out, "
+        "the one nearest to the medians of all",
     )
     source: str = Field(
         default="given", min_length=1, max_length=200, description="which catalogue, which page"
