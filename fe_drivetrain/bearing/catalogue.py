@@ -23,10 +23,10 @@ from fe_drivetrain.bearing.arrangements import (
     tapered_row,
     toroidal,
 )
-from fe_drivetrain.bearing.catalogue_page import CataloguePage
+from fe_drivetrain.bearing.catalogue_page import MEMBERS, CataloguePage
 from fe_drivetrain.bearing.contact import ContactLaw, houpert, iso_line
 from fe_drivetrain.bearing.designations import Kind
-from fe_drivetrain.bearing.fitted_rollers import MEMBERS, FittedRollers, fitted_rollers
+from fe_drivetrain.bearing.fitted_rollers import FittedRollers, fitted_rollers
 from fe_drivetrain.bearing.geometry import LAMINAE, Bearing
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated

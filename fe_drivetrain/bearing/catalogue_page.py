@@ -317,10 +317,10 @@ def _wrong_ratings(page: CataloguePage) -> Iterator[str]:
             f"{page.C:g} N: correct one of them"
         )
     if page.Cu is not None and not _FATIGUE[0] < page.C0 / page.Cu < _FATIGUE[1]:
-        low, high = (page.C0 / part for part in reversed(_FATIGUE))
+        least, most = (page.C0 / part for part in reversed(_FATIGUE))
         yield (
-            f"Cu is {page.Cu:g} N but must be {low:.4g} to {high:.4g} N, C0 of {page.C0:g} N over "
-            f"{_FATIGUE[1]:g} to {_FATIGUE[0]:g}: correct one of them"
+            f"Cu is {page.Cu:g} N but must be {least:.4g} to {most:.4g} N, C0 of {page.C0:g} N "
+            f"over {_FATIGUE[1]:g} to {_FATIGUE[0]:g}: correct one of them"
         )
 
 
