@@ -23,10 +23,10 @@ from fe_drivetrain.bearing.arrangements import (
     tapered_row,
     toroidal,
 )
-from fe_drivetrain.bearing.catalogue_page import CataloguePage
+from fe_drivetrain.bearing.catalogue_page import MEMBERS, CataloguePage
 from fe_drivetrain.bearing.contact import ContactLaw, houpert, iso_line
 from fe_drivetrain.bearing.designations import Kind
-from fe_drivetrain.bearing.fitted_rollers import MEMBERS, FittedRollers, fitted_rollers
+from fe_drivetrain.bearing.fitted_rollers import FittedRollers, fitted_rollers
 from fe_drivetrain.bearing.geometry import LAMINAE, Bearing
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated
@@ -345,6 +345,11 @@ def name_of(named: Named) -> str:
     return named.designation if isinstance(named, CataloguePage) else named
 
 
+def insides_of_page(page: CataloguePage) -> FittedRollers:
+    """All insides that fit a page, whichever of them it states."""
+    return fitted_rollers(page.model_copy(update={"inside": None}), MEMBERS)
+
+
 def fitted_entry(
     page: CataloguePage, member: int | None = None, fitted: FittedRollers | None = None
 ) -> Entry:
@@ -355,7 +360,7 @@ def fitted_entry(
     page : CataloguePage
         The page.
     member : int, optional
-        Which of them; the one nearest to the medians of all where left out.
+        Which of them; where left out, that of the page, or the one nearest to the medians of all.
     fitted : FittedRollers, optional
         The insides; `MEMBERS` of them where left out.
 
@@ -370,7 +375,13 @@ def fitted_entry(
     InputError
         No inside fits.
     """
-    found = fitted_rollers(page, MEMBERS) if fitted is None else fitted
+    member = page.inside if member is None else member
+    found = insides_of_page(page) if fitted is None else fitted
+    if member is not None and member >= len(found):
+        raise InputError(
+            f"inside of {page.designation} is {member} but must be from 0 to {len(found) - 1}, of "
+            "those that fit its page: correct it, or leave it out"
+        )
     inside = found.fields(found.middle if member is None else member)
     data: dict[str, Any] = {
         "title": f"{page.designation}, by its catalogue's page",

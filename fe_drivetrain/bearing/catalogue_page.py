@@ -21,6 +21,9 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import fault_sentences
 from fe_drivetrain.common.strict_yaml import digits_as_text, no_truth_value
 
+MEMBERS = 24
+"""Insides that fit a page where no number of them is asked for."""
+
 _SINGLE, _DOUBLE = 0.6, (0.675, 1.005)
 """e times Y of rollers in one row, and times Y1 and Y2 in two: 1.5 tan(alpha) times 0.4, 0.45 and
 0.67 cot(alpha) (ISO 281, table 8)."""
@@ -118,6 +121,13 @@ class CataloguePage(BaseModel):
     )
     limiting_speed_rpm: float | None = Field(
         default=None, gt=0, description="that the catalogue allows [1/min]"
+    )
+    inside: int | None = Field(
+        default=None,
+        ge=0,
+        lt=MEMBERS,
+        description=f"number of one of the {MEMBERS} insides that fit the page; where left out, "
+        "the one nearest to the medians of all",
     )
     source: str = Field(
         default="given", min_length=1, max_length=200, description="which catalogue, which page"
@@ -307,10 +317,10 @@ def _wrong_ratings(page: CataloguePage) -> Iterator[str]:
             f"{page.C:g} N: correct one of them"
         )
     if page.Cu is not None and not _FATIGUE[0] < page.C0 / page.Cu < _FATIGUE[1]:
-        low, high = (page.C0 / part for part in reversed(_FATIGUE))
+        least, most = (page.C0 / part for part in reversed(_FATIGUE))
         yield (
-            f"Cu is {page.Cu:g} N but must be {low:.4g} to {high:.4g} N, C0 of {page.C0:g} N over "
-            f"{_FATIGUE[1]:g} to {_FATIGUE[0]:g}: correct one of them"
+            f"Cu is {page.Cu:g} N but must be {least:.4g} to {most:.4g} N, C0 of {page.C0:g} N "
+            f"over {_FATIGUE[1]:g} to {_FATIGUE[0]:g}: correct one of them"
         )
 
 

@@ -18,14 +18,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fe_drivetrain.bearing.catalogue_page import CataloguePage
+from fe_drivetrain.bearing.catalogue_page import MEMBERS, CataloguePage
 from fe_drivetrain.bearing.rating import ball_capacity_factors, capacity_factors
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
-
-MEMBERS = 24
-"""Geometries where no number is asked for."""
 
 TRIED = 20000
 """Points of the lattice that are tried, at most."""

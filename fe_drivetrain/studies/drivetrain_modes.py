@@ -133,9 +133,9 @@ def modes(
         message names them.
     """
     _check(generator, speeds, speed, blades, tolerance)
-    for name, asked in (("range of operation", speeds and speeds[1]), ("rotor", speed)):
-        if asked is not None:
-            check_speed(name, asked, rated_speed(drivetrain), FARTHEST, "change it")
+    for name, turns in (("range of operation", speeds and speeds[1]), ("rotor", speed)):
+        if turns is not None:
+            check_speed(name, turns, rated_speed(drivetrain), FARTHEST, "change it")
     found, steps = Findings(), Steps(report)
     found.seed = None
     found.about(drivetrain)

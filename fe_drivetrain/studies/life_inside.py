@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_drivetrain.bearing.catalogue import changed_entry, fitted_entry
-from fe_drivetrain.bearing.fitted_rollers import MEMBERS, FittedRollers, fitted_rollers
+from fe_drivetrain.bearing.catalogue_page import MEMBERS
+from fe_drivetrain.bearing.fitted_rollers import FittedRollers, fitted_rollers
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow
 from fe_drivetrain.bearing.rolling import equilibrium
 from fe_drivetrain.bearing_life.life.life_rules import LifeRules

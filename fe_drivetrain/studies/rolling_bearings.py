@@ -8,7 +8,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from fe_drivetrain.bearing.catalogue import Entry, Named, name_of, read_bearing_catalogue
+from fe_drivetrain.bearing.catalogue import (
+    Entry,
+    Named,
+    insides_of_page,
+    name_of,
+    read_bearing_catalogue,
+)
 from fe_drivetrain.bearing.entry_clearance import normal_of
 from fe_drivetrain.bearing.geometry import Bearing, RollerRow
 from fe_drivetrain.bearing.operating_clearance import OperatingClearance
@@ -358,7 +364,10 @@ def profile_of(entry: Entry, profiled: bool) -> dict[str, Any]:
     """
     if not profiled or entry.crown or entry.kind not in PROFILE:
         return {}
-    return {"crown": PROFILE[entry.kind]}
+    page, crown = entry.page, PROFILE[entry.kind]
+    if entry.fitted and page is not None and page.inside is not None:
+        crown *= float(insides_of_page(page).crown[page.inside])
+    return {"crown": crown}
 
 
 def _stiffness(support: str | float) -> float | None:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from fe_drivetrain.bearing.catalogue import fitted_entry, insides_of_page
+from fe_drivetrain.bearing.catalogue_page import CataloguePage
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.dynamics import Asked, machine_of, plain_rungs
+from fe_drivetrain.dynamics.bodies.bearing_reactions import planet_bearing_name
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.shafts.uncertainty.input_study import ModelError, Study
 from fe_drivetrain.shafts.uncertainty.sampling import (
@@ -89,7 +93,14 @@ def turning_study(
 
     report("sensitivities")
     slopes = sensitivities(drivetrain, evaluate, list(spreads_of(drivetrain)))
-    samples = sample(drivetrain, evaluate, asked.count, asked.seed, report)
+    drawn = drawn_insides(drivetrain, asked.names)
+    samples = sample(drivetrain, evaluate, asked.count, asked.seed, report, drawn=drawn)
+    if drawn:
+        found.note(
+            f"Samples draw one of the insides that fit the page of {_words(drawn)}, too, each as "
+            "likely; sensitivities, and shares of the variance, are those of the values alone, "
+            "with the inside in the middle."
+        )
     varying = [name for name, one in samples.items() if one.varies]
     shares = (
         sobol_shares(drivetrain, evaluate, varying, asked.sobol, asked.seed, report)
@@ -101,6 +112,47 @@ def turning_study(
     return Study(
         drivetrain, rung.name, (), quantities, names, slopes, samples, errors, {}, {}, (), shares
     )
+
+
+def drawn_insides(drivetrain: Drivetrain, names: Sequence[str]) -> dict[str, int]:
+    """Insides that fit the pages of bearings whose quantities are asked for.
+
+    Parameters
+    ----------
+    drivetrain : Drivetrain
+        The drivetrain.
+    names : sequence of str
+        Names of quantities, of which those of a bearing have its name between dots.
+
+    Returns
+    -------
+    dict of str to int
+        Number of insides by the key of the page that states one of them; none of a page that
+        does, or whose bearing is not asked for.
+    """
+    places: list[tuple[str, str, object]] = []
+    if isinstance(drivetrain, Scene):
+        for number, unit in enumerate(drivetrain.bearing_units):
+            places.append((unit.bearing.name, f"bearing_units.{number}", unit.catalogue))
+    for number, row in enumerate(drivetrain.gearbox.bearings):
+        places.append((row.name, f"gearbox.bearings.{number}", row.catalogue))
+    for number, stage in enumerate(drivetrain.gearbox.stages):
+        for place, pin in enumerate(getattr(stage, "pins", ())):
+            key = f"gearbox.stages.{number}.pins.{place}"
+            places.append((planet_bearing_name(number + 1, pin.name), key, pin.catalogue))
+    asked = {part for name in names for part in name.split(".")[1:]}
+    return {
+        f"{key}.catalogue.inside": len(insides_of_page(page))
+        for name, key, page in places
+        if name in asked
+        and isinstance(page, CataloguePage)
+        and page.inside is None
+        and fitted_entry(page).fitted
+    }
+
+
+def _words(drawn: Iterable[str]) -> str:
+    return ", ".join(key.removesuffix(".inside") for key in drawn)
 
 
 def values_at(

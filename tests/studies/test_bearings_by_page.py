@@ -5,24 +5,35 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from fe_drivetrain.bearing.catalogue import fitted_entry
+from fe_drivetrain.bearing.catalogue import fitted_entry, insides_of_page
 from fe_drivetrain.bearing.catalogue_page import CataloguePage
 from fe_drivetrain.bearing.fitted_rollers import fitted_rollers
 from fe_drivetrain.bearing.geometry import RollerRow
 from fe_drivetrain.bearing_life.life.rated import rated_from_catalogue
 from fe_drivetrain.bearing_life.life.roller_models import rigid_rings
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.progress import silent
 from fe_drivetrain.common.reading import changed
+from fe_drivetrain.drivetrain_file import read_drivetrain
+from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.reading import library_scene
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.drivetrain_file.turning_parts import BearingData
 from fe_drivetrain.dynamics.bodies.catalogue_seats import bearing_of
+from fe_drivetrain.report.suite.findings import Findings
+from fe_drivetrain.shafts.uncertainty.sampling import sample
 from fe_drivetrain.studies.bearing_lives import LifeResult, life
 from fe_drivetrain.studies.life_inside import insides_of
 from fe_drivetrain.studies.life_options import LifeOptions
 from fe_drivetrain.studies.rolling_bearings import OneBearing
+from fe_drivetrain.studies.turning_uncertainty import (
+    TurningSamples,
+    drawn_insides,
+    turning_study,
+)
 from fe_drivetrain.turbine_loads.hub_loads.csv_table import write_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.surrogate import Condition, hub_load_set
 
@@ -132,3 +143,57 @@ def test_each_inside_has_the_clearance_and_profile_of_its_own() -> None:
         assert row.crown / row.diameter == pytest.approx(3.5e-4 * fitted.crown[k], rel=1e-12)
     straight = [inside.rows[0] for inside in insides_of(one, profiled=False)]
     assert {row.crown for row in straight if isinstance(row, RollerRow)} == {0.0}
+
+
+NU: dict[str, Any] = {"designation": "NU 2220", "C": 3.8e5, "C0": 4.5e5, "Cu": 5.4e4}
+INERTIA = {"generator.inertia": {"uniform": 0.05}}
+LIFE = "life.IMS-PLC-A.L10mr"
+
+
+def test_a_page_may_state_which_inside_it_has() -> None:
+    page = CataloguePage.read(NU, "page")
+    fitted, taken = insides_of_page(page), fitted_entry(page)
+    assert fitted_entry(CataloguePage.read({**NU, "inside": fitted.middle}, "page")) == (
+        taken.model_copy(update={"page": page.model_copy(update={"inside": fitted.middle})})
+    )
+    lengths = [
+        fitted_entry(CataloguePage.read({**NU, "inside": k}, "page")).element_length
+        for k in range(len(fitted))
+    ]
+    assert lengths == pytest.approx(list(fitted.length))
+    with pytest.raises(InputError, match="inside is 24 but must be less than 24"):
+        CataloguePage.read({**NU, "inside": 24}, "page")
+
+
+def test_samples_draw_every_inside_as_often_as_any_other() -> None:
+    drivetrain = read_drivetrain(
+        "nrel_5mw", {"gearbox.bearings.2.catalogue": NU, "uncertainty": INERTIA}
+    )
+    (key,) = drawn = drawn_insides(drivetrain, (LIFE, "modes.torsional.1"))
+    assert drawn == {"gearbox.bearings.2.catalogue.inside": 24}
+    assert drawn_insides(drivetrain, ("modes.torsional.1",)) == {}
+    stated = read_drivetrain("nrel_5mw", {"gearbox.bearings.2.catalogue": {**NU, "inside": 3}})
+    assert drawn_insides(stated, (LIFE,)) == {}
+
+    def inside(sampled: Drivetrain) -> dict[str, float]:
+        page = sampled.gearbox.bearings[2].catalogue
+        assert isinstance(page, CataloguePage)
+        return {"inside": -1.0 if page.inside is None else float(page.inside)}
+
+    found = sample(drivetrain, inside, 48, drawn={key: 24})["inside"]
+    assert found.nominal == -1.0  # the middle
+    assert sorted(found.values.tolist()) == sorted([*range(24)] * 2)
+
+
+def test_a_life_is_as_uncertain_as_the_inside_of_its_bearing() -> None:
+    """The generator's inertia changes no life at rated torque, so that only the insides do."""
+    asked = TurningSamples((LIFE,), 0.05, "rigid", 4, 0, 0)
+    scatter = []
+    for page in (NU, {**NU, "inside": 3}):
+        changes = {"gearbox.bearings.2.catalogue": page, "uncertainty": INERTIA}
+        found = Findings()
+        known = turning_study(read_drivetrain("nrel_5mw", changes), asked, found, silent)
+        scatter.append(np.ptp(known.samples[LIFE].values) / known.samples[LIFE].nominal)
+        assert any("Samples draw one of the insides" in one for one in found.notes) == (page is NU)
+    assert scatter[0] > 0.05
+    assert scatter[1] < 1e-9

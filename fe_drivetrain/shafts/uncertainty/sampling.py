@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -34,6 +35,8 @@ STEP = 1e-3
 
 #: Share of the results that a band holds.
 SHARE = 0.95
+
+NOTHING: Mapping[str, int] = MappingProxyType({})
 
 _RESAMPLES = 999
 _FINER = (0.5, 0.25, 0.125, 0.0625)  # of mesh sizes, where a wall asks for smaller ones
@@ -268,6 +271,7 @@ def sample(
     seed: int = 0,
     report: Callable[[str], object] = lambda step: None,
     content: Mapping[str, Any] | None = None,
+    drawn: Mapping[str, int] = NOTHING,
 ) -> dict[str, Samples]:
     """Results over a Latin hypercube of the scene's uncertain values, by name.
 
@@ -284,6 +288,9 @@ def sample(
     content : mapping or None
         All that `evaluate` depends on, as plain data: its results are kept as they come. None
         keeps nothing.
+    drawn : mapping of str to int
+        Keys that each sample gives a number from 0 to below so many, each as likely: which of
+        several a part is, which is no value of `Samples.inputs`.
 
     Raises
     ------
@@ -294,11 +301,14 @@ def sample(
     keys = tuple(spreads_of(scene))
     from scipy.stats import qmc
 
-    quantiles = qmc.LatinHypercube(d=len(keys), rng=seed).random(count)
-    inputs = np.column_stack([d.ppf(q) for d, q in zip(_spreads(scene), quantiles.T, strict=True)])
+    quantiles = qmc.LatinHypercube(d=len(keys) + len(drawn), rng=seed).random(count).T
+    inputs = np.column_stack(
+        [d.ppf(q) for d, q in zip(_spreads(scene), quantiles[: len(keys)], strict=True)]
+    )
+    numbers = [np.floor(n * q) for n, q in zip(drawn.values(), quantiles[len(keys) :], strict=True)]
     values = evaluated_rows(
-        inputs,
-        lambda row: _evaluated(scene, evaluate, keys, row),
+        np.column_stack([inputs, *numbers]),
+        lambda row: _evaluated(scene, evaluate, keys, row, tuple(drawn)),
         content,
         lambda number: report(f"samples ({number} of {count})"),
     )
@@ -426,9 +436,14 @@ def _spreads(scene: Drivetrain) -> list[Any]:
 
 
 def _evaluated(
-    scene: Stated, evaluate: Evaluate[Stated], keys: Sequence[str], row: Floats
+    scene: Stated,
+    evaluate: Evaluate[Stated],
+    keys: Sequence[str],
+    row: Floats,
+    drawn: Sequence[str] = (),
 ) -> Mapping[str, float]:
-    values = dict(zip(keys, row.tolist(), strict=True))
+    values: dict[str, Any] = dict(zip(keys, row[: len(keys)].tolist(), strict=True))
+    values |= {key: int(n) for key, n in zip(drawn, row[len(keys) :], strict=True)}
     try:
         return evaluate(with_values(scene, values))
     except InputError as error:
