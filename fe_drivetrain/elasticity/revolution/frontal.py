@@ -16,6 +16,7 @@ from numba import njit
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.threads import one_blas_thread
 
 _PANEL, _STRIP = 32, 96
 
@@ -79,7 +80,8 @@ class Factor:
         x = np.zeros(loads.shape)
         used = np.unique(self.dofs)
         x[used] = loads[used]
-        _solve(self.dofs, self.sizes, self.gone, self.values, x)
+        with one_blas_thread():  # fronts are small: threads would only wait for each other
+            _solve(self.dofs, self.sizes, self.gone, self.values, x)
         return x
 
 
@@ -94,9 +96,10 @@ def _sweep(
     # one layout, so that it is compiled once
     grams, law, shares = (np.ascontiguousarray(a) for a in (grams, law, shares))
     ids = np.ascontiguousarray(ids)
-    found, K, dofs, sizes, gone, values = _swept(
-        grams, law, ids, shares, kept, _users(ids, kept), order, store
-    )
+    with one_blas_thread():  # as in `Factor.solve`
+        found, K, dofs, sizes, gone, values = _swept(
+            grams, law, ids, shares, kept, _users(ids, kept), order, store
+        )
     if not found:
         raise InputError(
             "a part of the mesh can move without strain: hold it, or make its wall thicker"
