@@ -10,12 +10,12 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from fe_drivetrain.bearing import kernels
 from fe_drivetrain.bearing.contact_forces import packed
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.dynamics.time.law_loops import ZR, D, Z
 
 

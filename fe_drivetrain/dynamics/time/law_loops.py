@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.compiled import njit
 
 ROW, ANGLE, DRIFT, WAVE, ERROR = range(5)
 """Numbers of a law: places of its elongation, its phase and its drift among the rows, or -1; wave
