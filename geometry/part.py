@@ -197,7 +197,7 @@ class Part(BaseModel):
     built in Python as well as for one read from a scene file.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
 
     _truth = field_validator("*", mode="before")(no_truth_value)
 

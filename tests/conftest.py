@@ -100,33 +100,6 @@ def apart_from_the_user(shared_folder: Path) -> Iterator[None]:
         yield
 
 
-@pytest.fixture(scope="session", autouse=True)
-def compiled_once(shared_folder: Path) -> Iterator[None]:
-    """Let a process that needs a loop which another one compiles wait, and load what that keeps.
-
-    On a fresh clone all of them began with the same loops, and each compiled them for itself.
-    """
-    from numba.core.caching import NullCache
-    from numba.core.compiler_lock import global_compiler_lock
-    from numba.core.dispatcher import Dispatcher
-
-    folder = shared_folder / "loops"
-    folder.mkdir(exist_ok=True)
-    compile_ = Dispatcher.compile
-
-    def once(loop: Dispatcher, signature: Any) -> Any:
-        if isinstance(loop._cache, NullCache):
-            return compile_(loop, signature)
-        name = f"{loop.py_func.__module__}.{loop.py_func.__qualname__}.lock"
-        # numba's own lock first, so that no thread waits for a file with what another one needs
-        with global_compiler_lock, filelock.FileLock(folder / name, is_singleton=True):
-            return compile_(loop, signature)
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Dispatcher, "compile", once)
-        yield
-
-
 @pytest.fixture(autouse=True)
 def left_with_one_thread() -> Iterator[None]:
     """Fail where a test leaves compiled loops more threads than it found.

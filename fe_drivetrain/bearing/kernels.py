@@ -14,10 +14,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit, types
+from numba import types
 from numba.extending import intrinsic
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.compiled import njit
 
 #: Kinds of rows, and where in a row of ``data`` its numbers are.
 LAMINAE, CLOSED, BALLS = 0, 1, 2

@@ -7,10 +7,10 @@ has fallen leads to the one minimum from any start.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from fe_drivetrain.bearing.kernels import Packed, evaluate
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.compiled import njit
 
 MAX_STEPS = 100
 MAX_TRIALS = 80

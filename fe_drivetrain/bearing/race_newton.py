@@ -8,7 +8,6 @@ energy. So the whole energy is convex, as that of rigid rings is.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from fe_drivetrain.bearing.kernels import GAP, LENGTH, Packed, roller_sums, row_of
 from fe_drivetrain.bearing.newton import (
@@ -20,6 +19,7 @@ from fe_drivetrain.bearing.newton import (
     solve,
 )
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.compiled import njit
 
 MAX_STEPS = 100
 MAX_TRIALS = 60

@@ -141,8 +141,11 @@ def report_command(context: typer.Context, asked: ReportRequest) -> int:
     folder = asked.folder.resolve()
     if needs_browser:
         check_result_folder(folder / PRINTED)
+    from fe_drivetrain.elasticity.compiled_ahead import compiled_ahead
+
     with show_steps() as report:
-        results = _dossier(folder, asked, scene, own, report)
+        with compiled_ahead("solver", "meridian"):
+            results = _dossier(folder, asked, scene, own, report)
         if needs_browser:
             _print(needs_browser, folder, asked, results, report)
     shown_page = asked.folder / GROUP / OVERVIEW / "report.html"

@@ -52,9 +52,10 @@ def check_command(
 
     def work() -> int:
         hold_threads()
+        from fe_drivetrain.elasticity.compiled_ahead import compiled_ahead
         from fe_drivetrain.report.pictures.drawing_process import drawing_ready
 
-        with drawing_ready():
+        with drawing_ready(), compiled_ahead("meridian"):
             found = read_drivetrain(scene, parse_settings(set_ or ()))
             from fe_drivetrain.pages.check import show_check
             from fe_drivetrain.studies.scene_check import check
@@ -126,7 +127,10 @@ def advise_command(
             name = quantity or f"{found.bearing_names[0]}.Fz"
             shown = _of_reactions(found, name, share, loads, to_the_top)
         title = f"{drivetrain.title}: the model level that {name} needs"
-        return run_on_scene("advise", [scene], title, out, shown)
+        from fe_drivetrain.elasticity.compiled_ahead import compiled_ahead
+
+        with compiled_ahead(*(() if turning else ("meridian", "solver"))):
+            return run_on_scene("advise", [scene], title, out, shown)
 
     raise typer.Exit(guarded(work))
 

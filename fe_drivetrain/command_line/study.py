@@ -117,6 +117,14 @@ def study_command(context: typer.Context, asked: StudyRequest) -> int:
     hold_threads()
     check_result_folder(asked.out or Path("reports", "study", Path(asked.scene).stem))
     scene = named_scene(asked.scene, parse_settings(asked.set_ or ()))
+    from fe_drivetrain.elasticity.compiled_ahead import compiled_ahead
+
+    with compiled_ahead("solver", "meridian"):
+        return _studied(asked, scene)
+
+
+def _studied(asked: StudyRequest, scene: Scene) -> int:
+    """Study a scene and print the outcome; the exit status."""
     from fe_drivetrain.command_line.study_files import write_study
     from fe_drivetrain.pages.study import show_study
     from fe_drivetrain.studies.scene_study import study

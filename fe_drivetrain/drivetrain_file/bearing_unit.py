@@ -41,7 +41,7 @@ _SOFTEST = 1e-6  # below it round-off of the smallest turbine's shaft is stiffer
 class Keys(BaseModel):
     """A mapping of a scene file: known keys only, and no truth values where numbers stand."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     _truth = field_validator("*", mode="before")(no_truth_value)
 

@@ -20,7 +20,7 @@ MIN_DENSITY = 50.0
 class Material(BaseModel):
     """A linear elastic, isotropic material."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     _truth = field_validator("*", mode="before")(no_truth_value)
 

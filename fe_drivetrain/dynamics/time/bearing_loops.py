@@ -15,7 +15,7 @@ from fe_drivetrain.bearing import kernels
 from fe_drivetrain.bearing.contact_forces import packed
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.common.numba_loops import inner_loop
+from fe_drivetrain.common.compiled import inner_loop
 from fe_drivetrain.dynamics.time.law_loops import ZR, D, Z
 
 

@@ -8,7 +8,7 @@ turning the rows against the forces takes is put in by the clock.
 from __future__ import annotations
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.numba_loops import inner_loop, places
+from fe_drivetrain.common.compiled import inner_loop, places
 from fe_drivetrain.dynamics.time.law_loops import DAMPER, DAMPING, DRIFT, ROW, SPRING, ZR, Laws, Z
 from fe_drivetrain.dynamics.time.turning_rows import Turning
 

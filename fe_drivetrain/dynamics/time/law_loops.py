@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.common.numba_loops import inner_loop, places
+from fe_drivetrain.common.compiled import inner_loop, places
 
 ROW, ANGLE, DRIFT, WAVE, ERROR = places(5)
 """Numbers of a law: places of its elongation, its phase and its drift among the rows, or -1; wave

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.numba_loops import places
+from fe_drivetrain.common.compiled import places
 from fe_drivetrain.dynamics.time.law_loops import Laws
 from fe_drivetrain.dynamics.time.turning_rows import Matrices
 

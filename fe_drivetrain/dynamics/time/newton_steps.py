@@ -6,7 +6,7 @@ z = z_free - (1 - a_f) S d(z, z'),    S = R A^-1 R^T
 from __future__ import annotations
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.common.numba_loops import inner_loop
+from fe_drivetrain.common.compiled import inner_loop
 from fe_drivetrain.dynamics.time.bearing_loops import Rolling, bearing_forces
 from fe_drivetrain.dynamics.time.energy_account import FOLLOWED, POWER, STORED
 from fe_drivetrain.dynamics.time.law_loops import (

@@ -14,10 +14,9 @@ share in the inverse.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.common.numba_loops import inner_loop
+from fe_drivetrain.common.compiled import inner_loop, njit
 from fe_drivetrain.dynamics.time.bearing_loops import Rolling, bearing_forces, new_dampers
 from fe_drivetrain.dynamics.time.energy_account import (
     CLOCK,

@@ -11,10 +11,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.common.numba_loops import inner_loop, places
+from fe_drivetrain.common.compiled import inner_loop, njit, places
 
 MASS, DAMPING, STIFFNESS, INVERSE, DRIFT = places(5)
 """Square matrices: of the equations, the inverse of A, and what dampers have of displacements where

@@ -8,10 +8,11 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import get_num_threads, njit
+from numba import get_num_threads
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.arrays import Bools, Floats, Ints
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.elasticity.mesh.shapes import TETRAHEDRON_EDGES
 from fe_drivetrain.elasticity.operator.kernels import Index, inverse_transposed
 from fe_drivetrain.elasticity.operator.vectors import (

@@ -5,11 +5,11 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from skfem.quadrature import get_quadrature
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.elasticity.mesh.measures import CUBIC
 from fe_drivetrain.elasticity.mesh.numbering import check_nodes

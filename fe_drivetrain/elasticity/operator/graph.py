@@ -4,9 +4,9 @@ Compiled by numba at the first call (seconds), then kept in its cache on disk.
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.elasticity.operator.kernels import Index
 
 

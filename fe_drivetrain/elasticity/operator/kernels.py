@@ -10,11 +10,12 @@ arrays stays for the next ones, see `keep_freed_memory`.
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
 from numpy.typing import NDArray
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.common.memory import keep_freed_memory
 from fe_drivetrain.elasticity.operator.vectors import (
     LANES,

@@ -12,10 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.threads import one_blas_thread
 
 _PANEL, _STRIP = 32, 96
 
@@ -79,7 +80,8 @@ class Factor:
         x = np.zeros(loads.shape)
         used = np.unique(self.dofs)
         x[used] = loads[used]
-        _solve(self.dofs, self.sizes, self.gone, self.values, x)
+        with one_blas_thread():  # fronts are small: threads would only wait for each other
+            _solve(self.dofs, self.sizes, self.gone, self.values, x)
         return x
 
 
@@ -94,9 +96,10 @@ def _sweep(
     # one layout, so that it is compiled once
     grams, law, shares = (np.ascontiguousarray(a) for a in (grams, law, shares))
     ids = np.ascontiguousarray(ids)
-    found, K, dofs, sizes, gone, values = _swept(
-        grams, law, ids, shares, kept, _users(ids, kept), order, store
-    )
+    with one_blas_thread():  # as in `Factor.solve`
+        found, K, dofs, sizes, gone, values = _swept(
+            grams, law, ids, shares, kept, _users(ids, kept), order, store
+        )
     if not found:
         raise InputError(
             "a part of the mesh can move without strain: hold it, or make its wall thicker"
@@ -104,7 +107,7 @@ def _sweep(
     return K, dofs, sizes, gone, values
 
 
-@njit(cache=True, fastmath=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, fastmath=True)
 def _element(gram: Floats, law: Floats, K: Floats) -> None:
     """K of `condensed` of one element, what is right of the diagonal; overwrites K."""
     k, s = law.shape[0], law.shape[2]
@@ -133,7 +136,7 @@ def element_matrices(grams: Floats, law: Floats) -> Floats:
     return np.asarray(_element_matrices(np.ascontiguousarray(grams), np.ascontiguousarray(law)))
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _element_matrices(grams: Floats, law: Floats) -> Floats:
     size = law.shape[0] * grams.shape[1] // law.shape[2]
     K = np.empty((len(grams), size, size))
@@ -145,7 +148,7 @@ def _element_matrices(grams: Floats, law: Floats) -> Floats:
     return K
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _swept(
     grams: Floats,
     law: Floats,
@@ -217,7 +220,7 @@ def _users(ids: Ints, kept: int) -> Ints:
     return users
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _of_element(ids: Ints, seen: Ints) -> Ints:
     """Degrees of freedom that an element brings to its front; each is seen once."""
     brought = np.empty(len(ids), dtype=np.int64)
@@ -230,7 +233,7 @@ def _of_element(ids: Ints, seen: Ints) -> Ints:
     return brought[:n]
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _of_both(of_a: Ints, by_a: Ints, of_b: Ints, by_b: Ints, seen: Ints) -> Ints:
     """Degrees of freedom of two fronts, and in ``seen`` how many elements have brought each."""
     brought = np.empty(len(of_a) + len(of_b), dtype=np.int64)
@@ -247,7 +250,7 @@ def _of_both(of_a: Ints, by_a: Ints, of_b: Ints, by_b: Ints, seen: Ints) -> Ints
     return brought[:n]
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _placed(brought: Ints, users: Ints, seen: Ints, place: Ints) -> tuple[int, Ints, Ints]:
     """Place in the front of each degree of freedom, those that are complete first.
 
@@ -273,7 +276,7 @@ def _placed(brought: Ints, users: Ints, seen: Ints, place: Ints) -> tuple[int, I
     return gone, left, by
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _of_kept(found: Floats, dofs: Ints, kept: int) -> Floats:
     """Stiffness of what is kept, whole, from the upper triangle of the last front."""
     result = np.zeros((kept, kept))
@@ -283,7 +286,7 @@ def _of_kept(found: Floats, dofs: Ints, kept: int) -> Floats:
     return result
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _joined(parts):  # type: ignore[no-untyped-def]
     length = 0
     for part in parts:
@@ -297,7 +300,7 @@ def _joined(parts):  # type: ignore[no-untyped-def]
     return whole
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _add_element(front: Floats, K: Floats, dofs: Ints, shares: Floats, place: Ints) -> None:
     for i in range(len(K)):
         if dofs[i] < 0:
@@ -317,7 +320,7 @@ def _add_element(front: Floats, K: Floats, dofs: Ints, shares: Floats, place: In
                 front[a, a] += value if i == j else 2.0 * value
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _add(front: Floats, matrix: Floats, dofs: Ints, place: Ints) -> None:
     for i in range(len(dofs)):
         a = place[dofs[i]]
@@ -329,7 +332,7 @@ def _add(front: Floats, matrix: Floats, dofs: Ints, place: Ints) -> None:
                 front[b, a] += matrix[i, j]
 
 
-@njit(cache=True, fastmath=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, fastmath=True)
 def _eliminate(A: Floats, count: int) -> bool:
     """Cholesky of the first `count` rows, in panels; the rest becomes its Schur complement.
 
@@ -359,7 +362,7 @@ def _eliminate(A: Floats, count: int) -> bool:
     return True
 
 
-@njit(cache=True, fastmath=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, fastmath=True)
 def _inverse_of_root(A: Floats) -> bool:
     """Overwrite a symmetric block, given right of its diagonal, by U^-1 where A = U^T U."""
     n = len(A)
@@ -391,7 +394,7 @@ def _inverse_of_root(A: Floats) -> bool:
     return True
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _solve(dofs: Ints, sizes: Ints, gone: Ints, values: Floats, x: Floats) -> None:
     """Forward and backward, in place."""
     m = x.shape[1]

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
+from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.elasticity.mesh.shaft_section import shaft_quadrilaterals
 from fe_drivetrain.elasticity.revolution.lagrange import Element, lagrange_element
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
@@ -86,7 +87,8 @@ class Meridian:
         G[..., :m] = (share * rt[..., None]) * along - (share * rs[..., None]) * across
         G[..., m : 2 * m] = (share * xs[..., None]) * across - (share * xt[..., None]) * along
         G[..., 2 * m :] = (weight / r)[..., None] * element.values
-        return np.asarray(G.transpose(0, 2, 1) @ G)
+        with one_blas_thread():  # many small products
+            return np.asarray(G.transpose(0, 2, 1) @ G)
 
     def sides(self, here: Where) -> Ints:
         """(k, 2) cell and side of the boundary's sides whose both ends and middle are meant."""

@@ -10,11 +10,11 @@ being symmetric.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.elasticity.operator.element_loops import in_pieces
 from fe_drivetrain.elasticity.operator.kernels import AHEAD, Index, pattern_of
 from fe_drivetrain.elasticity.operator.vectors import (

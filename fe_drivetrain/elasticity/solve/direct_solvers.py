@@ -17,13 +17,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import splu
 from threadpoolctl import threadpool_limits
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.elasticity.operator.kernels import together
 

@@ -21,11 +21,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
 from numpy.typing import NDArray
 from scipy import linalg, sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.elasticity.operator import kernels

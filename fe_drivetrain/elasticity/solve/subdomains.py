@@ -7,11 +7,11 @@ its supports, and its softest motions are those that a solver must know of the w
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy import linalg, sparse
 
 from fe_drivetrain.common.arrays import CHUNK, Floats, Ints, chunks
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.elasticity.mesh.mapping import jacobian
 from fe_drivetrain.elasticity.mesh.shapes import element_kind

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from numba import njit
-
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.compiled import njit
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -22,10 +22,10 @@ from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from numba import njit
-
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.compiled import njit
 
 
 class Parts(NamedTuple):

@@ -16,9 +16,8 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.turbine_loads.hub_loads.turbine_air import (
     FORE,
     FORE_RATE,

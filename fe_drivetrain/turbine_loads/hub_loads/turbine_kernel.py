@@ -11,9 +11,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.turbine_loads.hub_loads.turbine_air import (
     FORE,
     FORE_RATE,
