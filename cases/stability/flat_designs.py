@@ -173,7 +173,7 @@ def capped_price(limit: float) -> float:
 
     def bores(c: float) -> Floats:
         free = [brentq(lambda d, e=e: d - c * (e**4 - d**4), 0.0, e) for e in OUTER]
-        return np.minimum(free, HIGH)
+        return np.asarray(np.minimum(free, HIGH))
 
     def lack(log_c: float) -> float:
         return bending_stiffness(LENGTHS, OUTER, bores(np.exp(log_c)), MODULUS) / limit - 1.0

@@ -44,7 +44,7 @@ def state_losses(found: Findings, losses: DrivetrainLosses) -> None:
     found.found(EFFICIENCY, 100.0 * float(own.efficiency[0]), 100.0 * _relative(losses))
     over_life = life_efficiency(losses)
     if over_life is not None:
-        found.found(OVER_LIFE, *(100.0 * part for part in over_life))
+        found.found(OVER_LIFE, 100.0 * over_life[0], 100.0 * over_life[1])
     found.found(HEAT, whole / 1e3, float(band[0]) * speed / 1e3)
     torque = float(own.generator_torque[0])
     found.found(GENERATOR, torque / 1e3, float(band[0]) / abs(own.ratio) / 1e3)
