@@ -16,7 +16,7 @@ from fe_drivetrain.common import (
 from fe_drivetrain.report import bars
 from fe_drivetrain.report.suite import Page, Run, column
 
-KILLS, QUICK_KILLS = 100, 3
+KILLS, QUICK_KILLS = 100, 2
 KINDS, QUICK_KINDS = [*command_kills.QUICK, *command_kills.OTHERS], [*command_kills.QUICK]
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 AFTER = "What kills at random moments did: runs that they ended, and what was damaged"
@@ -53,7 +53,7 @@ def experiment(kills: int, kinds: list[str]) -> list[dict[str, Any]]:
     "Files of others: kills of every kind of command, and folders that are not theirs",
     source="renameat2(2), link(2) and flock(2), Linux man-pages 6",
     settings={
-        "kills": "100 (quick 3; from 1)",
+        "kills": "100 (quick 2; from 1)",
         "kinds": "[run, new, export, run of several, advise, validate, check, compare, study, "
         "loads, life, uncertainty] (quick [run, new, export])",
     },
