@@ -41,6 +41,7 @@ from .sample_parts import write_sample as write_sample
 from .session import gmsh_session as gmsh_session
 from .shaft import Flange as Flange
 from .shaft import Section as Section
+from .shaft import Segment as Segment
 from .shaft import Shaft as Shaft
 from .step_files import write_step as write_step
 from .walls import check_sizes as check_sizes

@@ -53,7 +53,7 @@ class UncertaintyResult(Result):
 
     @property
     def level(self) -> int | str:
-        """Model level that was sampled: 1 beam, 2 meridian; of all that turns its name."""
+        """Level that was sampled: 1 beam, 2 meridian, 4 solids; of all that turns its name."""
         return self.effects.level
 
     @property
@@ -144,8 +144,8 @@ def uncertainty(
     tolerance : float
         Allowed error of the level, relative.
     level : int, str or None
-        Level to sample, 1 or 2, for what turns "torsional", "rigid" or "flexible"; None: the
-        cheapest that the adviser finds accurate enough.
+        Level to sample, 1, 2 or 4, for what turns "torsional", "rigid" or "flexible"; None: the
+        cheapest that the adviser finds accurate enough, 4 not being one.
     samples : int
         Samples of the Latin hypercube.
     seed : int
@@ -197,8 +197,8 @@ def _shaft_level(level: int | str | None) -> int | None:
     """Level of the main shaft; that of what turns is refused."""
     if isinstance(level, str):
         raise InputError(
-            f"{argument('level', level)} is one of all that turns: use 1 (beam) or 2 (meridian) "
-            "for reactions and stiffnesses"
+            f"{argument('level', level)} is one of all that turns: use 1 (beam), 2 (meridian) or 4 "
+            "(assembly of solids) for reactions and stiffnesses"
         )
     return level
 

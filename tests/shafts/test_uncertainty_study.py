@@ -380,7 +380,7 @@ def test_the_command_writes_a_page_and_the_same_again(scene_file: Path, tmp_path
     ("options", "message"),
     [
         (["--quantity", "main_bearing.Mq"], "'main_bearing.Mq' is unknown: use one of"),
-        (["--level", "3"], "cannot be sampled: use 1 (beam) or 2 (meridian)"),
+        (["--level", "3"], "cannot be sampled: use 1 (beam), 2 (meridian) or 4 (assembly"),
         (["--quantity", "main_bearing.My", "--load", "hub.Fy=1"], "is zero at level 1"),
         (["--load", "hub.Fq=1"], "'hub.Fq' is unknown"),
         (["--tolerance", "much"], "must be between 0 and 100 %"),

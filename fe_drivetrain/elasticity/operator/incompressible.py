@@ -98,6 +98,7 @@ def assemble_materials(
     materials: Sequence[tuple[Bools, tuple[float, float]]],
     n_dofs: int | None = None,
     others: sparse.bsr_array | None = None,
+    pattern: Pattern | None = None,
 ) -> sparse.bsr_array:
     """Sum of `assemble_unlocked` over elements of several materials.
 
@@ -109,6 +110,8 @@ def assemble_materials(
         Flags (n_cells,) of the elements of each material, and its Lame's constants [Pa].
     others : sparse.bsr_array or None
         Matrix (n_dofs, n_dofs) in 3x3 blocks that is added [N/m].
+    pattern : Pattern or None
+        See `assemble`.
     """
     averaged = [poisson_ratio(lame) >= AVERAGED_FROM for _, lame in materials]
     k = cells.shape[1]
@@ -116,7 +119,7 @@ def assemble_materials(
         (some, split(lame, k)[0] if projects else lame)
         for (some, lame), projects in zip(materials, averaged, strict=True)
     ]
-    K = elasticity.assemble_materials(points, cells, plain, n_dofs, others=others)
+    K = elasticity.assemble_materials(points, cells, plain, n_dofs, pattern, others)
     for (some, lame), projects in zip(materials, averaged, strict=True):
         if projects:
             K = _with_averaged(K, points, cells[some], split(lame, k)[1])

@@ -8,7 +8,7 @@ sixteen right-hand sides go through together: the matrices are read once for all
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -22,8 +22,14 @@ from fe_drivetrain.elasticity.operator import kernels
 from fe_drivetrain.elasticity.operator.vectors import LANES
 from fe_drivetrain.elasticity.solve.aggregates import coarsened
 from fe_drivetrain.elasticity.solve.coarse_product import coarse_product
+from fe_drivetrain.elasticity.solve.recycled import Start
 from fe_drivetrain.elasticity.solve.reduction import Joints, System, diagonal_blocks, in_blocks
-from fe_drivetrain.elasticity.solve.stopping import LAST_DIGIT, energy_error, is_hopeless
+from fe_drivetrain.elasticity.solve.stopping import (
+    LAST_DIGIT,
+    energy_error,
+    is_hopeless,
+    tail_ratio,
+)
 
 MAX_ITERATIONS = 150
 
@@ -354,11 +360,14 @@ class Iteration:
     energy_error : float
         Maximum estimate, over the columns, of the relative error in the energy norm; infinite where
         stiffness or preconditioner turned out not to be positive.
+    tail_ratio : float
+        What the estimate rests on, see `stopping.tail_ratio`, of the worst column.
     """
 
     x: Floats
     iterations: int
     energy_error: float
+    tail_ratio: float = field(default=1.0, kw_only=True)
 
 
 def conjugate_gradients(
@@ -367,6 +376,7 @@ def conjugate_gradients(
     precondition: Callable[[Floats], Floats],
     tolerance: float,
     foreseen: Callable[[], float] = lambda: 0.0,
+    start: Start | None = None,
 ) -> Iteration:
     """Solve K x = F for all columns at once, until the energy error is small enough.
 
@@ -384,6 +394,8 @@ def conjugate_gradients(
     foreseen : callable
         Gives the number of iterations that it was thought to take: patience with a slow beginning,
         see `stopping.is_hopeless`.
+    start : Start or None
+        Where to start; at zero where not given.
 
     Returns
     -------
@@ -392,13 +404,21 @@ def conjugate_gradients(
         where the tolerance is not reached.
     """
     found = [
-        _solved(K, F[:, columns], precondition, tolerance, foreseen)
+        _solved(
+            K,
+            F[:, columns],
+            precondition,
+            tolerance,
+            foreseen,
+            None if start is None else start.part(columns),
+        )
         for columns in kernels.together(F.shape[1])
     ]
     return Iteration(
         np.hstack([part.x for part in found]),
         max(part.iterations for part in found),
         max(part.energy_error for part in found),
+        tail_ratio=max(part.tail_ratio for part in found),
     )
 
 
@@ -408,15 +428,19 @@ def _solved(
     precondition: Callable[[Floats], Floats],
     tolerance: float,
     foreseen: Callable[[], float],
+    start: Start | None = None,
 ) -> Iteration:
     """Conjugate gradients for a few columns, as `conjugate_gradients`."""
     count = F.shape[1]
     if count > 1:
         F = kernels.in_lanes(F)
+        if start is not None:
+            energies = np.append(start.energies, np.zeros(F.shape[1] - count))
+            start = replace(start, x=kernels.in_lanes(start.x), energies=energies)
     found = Iteration(np.zeros_like(F), 0, 0.0)  # where all columns are zero
     errors: list[float] = []
     with one_blas_thread():
-        for found in iterates(K, F, precondition):
+        for found in iterates(K, F, precondition, start):
             errors.append(found.energy_error)
             too_long = found.iterations == MAX_ITERATIONS
             too_long |= is_hopeless(errors, tolerance, MAX_ITERATIONS, foreseen)
@@ -426,7 +450,10 @@ def _solved(
 
 
 def iterates(
-    K: sparse.bsr_array, F: Floats, precondition: Callable[[Floats], Floats]
+    K: sparse.bsr_array,
+    F: Floats,
+    precondition: Callable[[Floats], Floats],
+    start: Start | None = None,
 ) -> Iterator[Iteration]:
     """Conjugate gradients, a step at a time; ``x`` is overwritten by the next step.
 
@@ -434,9 +461,15 @@ def iterates(
     """
     R = np.array(F, order="C")
     X = np.zeros_like(R)
+    before: Floats | float = 0.0
+    least = 1.0
+    if start is not None:
+        X = np.array(start.x, order="C")
+        before, least = start.energies, start.least_ratio
+        kernels.residual(K.indptr, K.indices, K.data, X, np.ascontiguousarray(F), R)
     P = np.ascontiguousarray(precondition(R))  # for others each loop would be compiled once more
     rz = kernels.dots(R, P)
-    start = rz
+    first = rz
     KP, zero = np.empty_like(R), np.zeros_like(R)
     terms: list[Floats] = []
     alive = np.full(len(rz), True)
@@ -444,14 +477,16 @@ def iterates(
         kernels.residual(K.indptr, K.indices, K.data, P, zero, KP)
         curvature = -kernels.dots(P, KP)
         # Columns that are zero, or solved to the last digit, stand still.
-        alive = np.abs(rz) > LAST_DIGIT * np.abs(start)
+        alive = np.abs(rz) > LAST_DIGIT * np.abs(first)
         if (alive & ((rz < 0.0) | ~(curvature > 0.0))).any():
             yield Iteration(X, len(terms), math.inf)
             return
         alpha = np.divide(rz, curvature, out=np.zeros_like(rz), where=alive)
         kernels.advance(X, R, P, KP, alpha)
         terms.append(alpha * rz)
-        yield Iteration(X, len(terms), energy_error(np.array(terms)))
+        added = np.array(terms)
+        error = energy_error(added, before, least)
+        yield Iteration(X, len(terms), error, tail_ratio=float(tail_ratio(added).max()))
         Z = np.ascontiguousarray(precondition(R))
         new = kernels.dots(R, Z)
         kernels.redirect(P, Z, np.divide(new, rz, out=np.zeros_like(rz), where=alive))

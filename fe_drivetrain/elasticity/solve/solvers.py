@@ -96,6 +96,8 @@ class Solver:
     setup_seconds: float
     bytes: int
     iterate: Callable[[Floats], multigrid.Iteration]
+    precondition: Callable[[Floats], Floats] | None = None
+    """What its factor or hierarchy does to right-hand sides; None of processes of their own."""
 
     __repr__ = short_repr
 
@@ -233,24 +235,24 @@ def factorise(
     assert isinstance(system, System)
     if method in ITERATIVE:
         made = multigrid.build(system) if method == "multigrid" else schwarz.build(system)
-        held = made.bytes
+        held, by = made.bytes, made.precondition
 
         @cache
         def foreseen() -> float:
             return iterations(system, tolerance) if method == "multigrid" else 0.0
 
         def iterate(F: Floats) -> multigrid.Iteration:
-            by = made.precondition
             return multigrid.conjugate_gradients(system.K, F, by, tolerance, foreseen)
 
     else:
         factor = direct_solvers.factorise(system.K, method)
-        held = factor.bytes
+        held, by = factor.bytes, factor.apply
 
         def iterate(F: Floats) -> multigrid.Iteration:
             return _refined(system, factor, F, tolerance)
 
-    return Solver(system, method, reason, tolerance, time.perf_counter() - start, held, iterate)
+    seconds = time.perf_counter() - start
+    return Solver(system, method, reason, tolerance, seconds, held, iterate, by)
 
 
 def _refined(

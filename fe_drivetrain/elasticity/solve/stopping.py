@@ -26,22 +26,49 @@ _PATIENCE = 40
 _LONGER = 2.0
 
 
-def energy_error(terms: NDArray[np.float64]) -> float:
+def tail_ratio(terms: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Largest ratio, seen so far, of what came after a step to what the step itself added.
+
+    Parameters
+    ----------
+    terms : ndarray
+        Terms (k, m) that each step of conjugate gradients added to the squared energy norm.
+
+    Returns
+    -------
+    ndarray
+        (m,) 1 or more.
+    """
+    tails = np.cumsum(terms[::-1], axis=0)[::-1]  # from each step to the last
+    # At the start convergence is another. A window of 1e-4 fell below half the truth on thin tubes.
+    recent = tails <= _RECENT * tails[0]
+    recent |= ~recent.any(axis=0)
+    ratio = np.divide(tails, terms, out=np.ones_like(terms), where=recent & (terms > 0.0))
+    return np.asarray(ratio.max(axis=0))
+
+
+def energy_error(
+    terms: NDArray[np.float64],
+    started: NDArray[np.float64] | float = 0.0,
+    least_ratio: float = 1.0,
+) -> float:
     """Estimated relative energy error after the last step, of the worst column.
 
     Parameters
     ----------
     terms : ndarray
         Terms (k, m) that each step of conjugate gradients added to the squared energy norm.
+    started : ndarray or float
+        (m,) squared energy norm of where the iteration started, orthogonal in energy to all that it
+        adds: a Galerkin solution, or zero.
+    least_ratio : float
+        The least to take for `tail_ratio`: what iterations from zero have shown before. The few
+        steps from a good start show little of how the iteration converges.
     """
     last = terms[-1]
-    tails = np.cumsum(terms[::-1], axis=0)[::-1]  # from each step to the last
-    total = tails[0]
-    # At the start convergence is another. A window of 1e-4 fell below half the truth on thin tubes.
-    recent = tails <= _RECENT * total
-    recent |= ~recent.any(axis=0)
-    ratio = np.divide(tails, terms, out=np.ones_like(terms), where=recent & (terms > 0.0))
-    squared = np.divide(ratio.max(axis=0) * last, total, out=np.zeros_like(last), where=total > 0.0)
+    total = np.cumsum(terms[::-1], axis=0)[-1] + started
+    ratio = np.maximum(tail_ratio(terms), least_ratio)
+    squared = np.divide(ratio * last, total, out=np.zeros_like(last), where=total > 0.0)
     return float(np.sqrt(squared.max()))
 
 

@@ -46,6 +46,7 @@ from fe_drivetrain.shafts.fidelity.ladder import (
 from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.shafts.fidelity.shafts import condensed_shaft
 from fe_drivetrain.shafts.response.model import Model
+from fe_drivetrain.shafts.response.neighbours import EVERYTHING, Neighbours, Reuse
 from fe_drivetrain.shafts.response.unit_loads import Response
 
 #: Nothing is taken from the cache: times are part of the answer.
@@ -357,6 +358,7 @@ def assembly_series(
     quantities: Sequence[Quantity],
     report: Callable[[str], object] = silent,
     cache: Cache | None = None,
+    neighbours: Sequence[Neighbours] | None = None,
 ) -> tuple[LevelModel, float, list[OnMeshes]]:
     """Solve the assembly on its mesh and on two coarser ones, and estimate its errors.
 
@@ -370,6 +372,8 @@ def assembly_series(
         Called with what is being done.
     cache : Cache or None
         Where solutions may come from; the user's if not given.
+    neighbours : Sequence[Neighbours] or None
+        What designs before have left of each mesh, the coarsest first, see `mesh_neighbours`.
 
     Returns
     -------
@@ -382,11 +386,12 @@ def assembly_series(
     """
     length = scene.shaft.length
     sizes, levels, factors = [], [], []
+    near = [None] * (len(COARSER) + 1) if neighbours is None else neighbours
     for number, factor in enumerate(COARSER, 1):
         report(f"level 4: assembly of solids ({number} of {len(COARSER) + 1})")
         coarser = scene.model_copy(update={"mesh": scene.mesh.scaled(factor)})
         try:
-            level, coarse, _ = solved_assembly(coarser, cache)
+            level, coarse, _ = solved_assembly(coarser, cache, near[number - 1])
         except InputError:  # too coarse for a wall
             continue
         sizes.append(mean_size(coarse.mesh))
@@ -394,7 +399,7 @@ def assembly_series(
         factors.append(factor)
     report(f"level 4: assembly of solids ({len(COARSER) + 1} of {len(COARSER) + 1})")
     start = time.perf_counter()
-    level, model, response = solved_assembly(scene, cache)
+    level, model, response = solved_assembly(scene, cache, near[-1])
     seconds = time.perf_counter() - start
     sizes.append(mean_size(model.mesh))
     levels.append(level)
@@ -411,6 +416,17 @@ def assembly_series(
         for quantity, error in zip(quantities, errors, strict=True)
     ]
     return level, seconds, series
+
+
+def mesh_neighbours(reuse: Reuse = EVERYTHING) -> tuple[Neighbours, ...]:
+    """Nothing yet of the meshes that `assembly_series` solves an assembly on.
+
+    Parameters
+    ----------
+    reuse : Reuse
+        What of a design is used for the next.
+    """
+    return tuple(Neighbours(reuse) for _ in range(len(COARSER) + 1))
 
 
 def recovered_errors(

@@ -20,13 +20,14 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.reading import value_changes
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene, coarser_scene
-from fe_drivetrain.shafts.fidelity.adviser import assembly_series
+from fe_drivetrain.shafts.fidelity.adviser import assembly_series, mesh_neighbours
 from fe_drivetrain.shafts.fidelity.change_bands import OnMeshes, OnSprings, change_band
 from fe_drivetrain.shafts.fidelity.ladder import housing_springs, shaft_level, statics_level
 from fe_drivetrain.shafts.fidelity.quantities import NOISE
 from fe_drivetrain.shafts.fidelity.quantity import Quantity, Reported, named_load
 from fe_drivetrain.shafts.fidelity.shafts import condensed_shaft
 from fe_drivetrain.shafts.response.entering import Factors
+from fe_drivetrain.shafts.response.neighbours import Neighbours
 
 
 @dataclass(frozen=True)
@@ -210,8 +211,11 @@ def compare_designs(
         common = [q for q in common if any(q in some for some in something)]
     short = [q for q in common if not _is_within(found, q, tolerance)]
     if short:
-        items = [(name, scene, _chosen(asked[name], short)) for name, scene in designs.items()]
-        for name, better in zip(designs, mapped(_as_assembly, items, 1, report), strict=True):
+        near = mesh_neighbours()
+        solved = [
+            (name, scene, _chosen(asked[name], short), near) for name, scene in designs.items()
+        ]
+        for name, better in zip(designs, mapped(_as_assembly, solved, 1, report), strict=True):
             for short_of, value in better.items():
                 found[name][short_of] = replace(value, cheaper=found[name][short_of].cheaper)
     first = next(iter(asked))
@@ -281,10 +285,14 @@ def _is_within(found: Mapping[str, Mapping[str, Value]], name: str, tolerance: f
 
 
 def _as_assembly(
-    report: Progress, name: str, scene: Scene, quantities: Sequence[Quantity]
+    report: Progress,
+    name: str,
+    scene: Scene,
+    quantities: Sequence[Quantity],
+    near: Sequence[Neighbours],
 ) -> dict[str, Value]:
-    """Values of the assembly of solids, by name of the quantity."""
-    level, _, series = assembly_series(scene, quantities, _named(report, name))
+    """Values of the assembly of solids, by name of the quantity, with what neighbours have left."""
+    level, _, series = assembly_series(scene, quantities, _named(report, name), neighbours=near)
     return {
         quantity.name: Value(of.values[-1], of.band.half_width, level.level, rests_on=of)
         for quantity, of in zip(quantities, series, strict=True)

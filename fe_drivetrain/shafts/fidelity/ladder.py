@@ -35,9 +35,9 @@ from fe_drivetrain.shafts.fidelity.shafts import (
     reference_points,
     ringed_shaft,
 )
-from fe_drivetrain.shafts.response.cached import cached_response
 from fe_drivetrain.shafts.response.entering import Factors, factor_values
-from fe_drivetrain.shafts.response.model import LOADS, Model, build_model, mesh_scene, scene_loads
+from fe_drivetrain.shafts.response.model import LOADS, Model, scene_loads
+from fe_drivetrain.shafts.response.neighbours import NOTHING, Neighbours
 from fe_drivetrain.shafts.response.unit_loads import Response
 
 TITLES = (
@@ -264,11 +264,22 @@ def assembly_level(scene: Scene, cache: Cache | None = None) -> LevelModel:
     return solved_assembly(scene, cache)[0]
 
 
-def solved_assembly(scene: Scene, cache: Cache | None = None) -> tuple[LevelModel, Model, Response]:
-    """Level 4, the model that was solved, and its response; see `assembly_level`."""
+def solved_assembly(
+    scene: Scene, cache: Cache | None = None, neighbours: Neighbours | None = None
+) -> tuple[LevelModel, Model, Response]:
+    """Level 4, the model that was solved, and its response.
+
+    Parameters
+    ----------
+    scene, cache : Scene, Cache or None
+        See `assembly_level`.
+    neighbours : Neighbours or None
+        What designs before have left of this mesh; nothing where not given.
+    """
     start = time.perf_counter()
-    model = build_model(scene, mesh_scene(scene))
-    response = cached_response(model, cache=cache)
+    if neighbours is None:
+        neighbours = Neighbours(NOTHING)
+    model, response = neighbours.solved(scene, cache)
     return level_of_response(scene, response, time.perf_counter() - start), model, response
 
 

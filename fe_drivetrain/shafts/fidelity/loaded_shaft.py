@@ -155,6 +155,7 @@ def loaded_shaft(scene: Scene, solved: Solved, factors: Floats) -> LoadedShaft:
             "bearing units alone; ask for reactions or stiffnesses of the hub"
         )
     body = solved.body
+    assert body is not None  # an assembly has no shaft alone
     on = supported(body, scene_supports(scene, solved.springs), scene.coupled_units)
     columns = point_loads(scene, body) @ factors
     u = on.motions @ columns

@@ -37,19 +37,19 @@ UNIT = {"axial": 0, "radial_y": 1, "radial_z": 2, "tilt": 4, "yaw": 5}
 
 @dataclass(frozen=True)
 class Solved:
-    """A scene at level 1 or 2, with what it was put together from.
+    """A scene at level 1 or 2, with what it was put together from, or as an assembly.
 
     Attributes
     ----------
-    body : Condensed
-        The free shaft.
+    body : Condensed or None
+        The free shaft; None of an assembly.
     springs : Mapping[str, Floats]
-        (6, 6) stiffness of each bearing unit.
+        (6, 6) stiffness of each bearing unit; empty of an assembly.
     model : LevelModel
         The shaft on them.
     """
 
-    body: Condensed
+    body: Condensed | None
     springs: Mapping[str, Floats]
     model: LevelModel
 
@@ -208,7 +208,11 @@ def _vanishes(number: Number, solved: Solved) -> bool:
 
 
 def _of_shaft(part: str) -> Callable[[Solved], float]:
-    return lambda solved: shaft_numbers(solved.body)[part]
+    def of(solved: Solved) -> float:
+        assert solved.body is not None
+        return shaft_numbers(solved.body)[part]
+
+    return of
 
 
 def _of_unit(owner: str, part: str) -> Callable[[Solved], float]:

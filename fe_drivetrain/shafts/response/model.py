@@ -7,6 +7,7 @@ import numpy as np
 from scipy import sparse
 
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
@@ -32,6 +33,7 @@ from fe_drivetrain.elasticity.mesh.checks import refuse_unsound
 from fe_drivetrain.elasticity.mesh.facets import MEANS, face_weights, volume_weights
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.elasticity.mesh.side_by_side import beside, renamed
+from fe_drivetrain.elasticity.operator.elasticity import Pattern
 from fe_drivetrain.elasticity.operator.incompressible import (
     assemble_materials,
     assemble_unlocked,
@@ -126,12 +128,22 @@ class Model:
     @property
     def stiffness(self) -> sparse.bsr_array:
         """Stiffness of all parts and springs, before any constraint [N/m]."""
+        return self.assembled()
+
+    def assembled(self, pattern: Pattern | None = None) -> sparse.bsr_array:
+        """Stiffness of all parts and springs, before any constraint [N/m].
+
+        Parameters
+        ----------
+        pattern : Pattern or None
+            Pattern of its elements, where it is known: of a mesh that was moved it is the same.
+        """
         springs: sparse.bsr_array | None = None
         for point, k in self.springs:
             spring = (point.motion.T @ sparse.csr_array(k) @ point.motion).tobsr((3, 3))
             springs = spring if springs is None else springs + spring
         if isinstance(self.part_stiffness, PartStiffness):
-            return self.part_stiffness.together(springs)
+            return self.part_stiffness.together(springs, pattern)
         total = sum(self.part_stiffness.values())
         return total if springs is None else total + springs
 
@@ -177,14 +189,18 @@ class PartStiffness(Mapping[str, sparse.bsr_array]):
             self._known[part] = assemble_unlocked(mesh.points, cells, lame, self._n_dofs)
         return self._known[part]
 
-    def together(self, springs: sparse.bsr_array | None = None) -> sparse.bsr_array:
+    def together(
+        self, springs: sparse.bsr_array | None = None, pattern: Pattern | None = None
+    ) -> sparse.bsr_array:
         """Stiffness of all parts and of springs [N/m], assembled in one: a sum takes longer."""
         mesh = self._mesh
         materials = [
             (mesh.part == number, self._scene.material_of(part).lame)
             for number, part in enumerate(mesh.part_names)
         ]
-        return assemble_materials(mesh.points, mesh.cells, materials, self._n_dofs, springs)
+        return assemble_materials(
+            mesh.points, mesh.cells, materials, self._n_dofs, springs, pattern
+        )
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._mesh.part_names)
@@ -193,31 +209,45 @@ class PartStiffness(Mapping[str, sparse.bsr_array]):
         return len(self._mesh.part_names)
 
 
-def mesh_scene(scene: Scene) -> Mesh:
+def mesh_scene(scene: Scene, cache: Cache | None = None) -> Mesh:
     """Build and mesh the parts of a scene; bonded bearings share nodes with their housings.
 
     Housings from files have meshes of their own, and bonded bearings are tied to them.
 
     A mesh that was generated before comes from the cache, see `fe_drivetrain.common.cache`.
 
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    cache : Cache or None
+        Cache of meshes; the user's if not given.
+
     Raises
     ------
     InputError
         A mesh size is too large for a wall, or the file of a housing has a fault.
     """
-    mesh = mesh_parts(scene.shaft, scene.bearing_units, scene.mesh, scene.seats)
+    mesh = mesh_parts(scene.shaft, scene.bearing_units, scene.mesh, scene.seats, cache)
     if scene.nose is None:
         return mesh
     bands = {b.name: Band(*b.span) for b in scene.nose_bearings}
     try:
-        nose = cached_mesh(scene.nose.body, [], {}, scene.mesh, frozenset(), bands=bands)
+        nose = cached_mesh(scene.nose.body, [], {}, scene.mesh, frozenset(), cache, bands)
     except InputError as error:
         raise InputError(f"nose, which is meshed as a shaft: {error}") from error
     return beside(mesh, renamed(nose, "shaft", "nose"))
 
 
-def build_model(scene: Scene, mesh: Mesh) -> Model:
+def build_model(scene: Scene, mesh: Mesh, checked: bool = False) -> Model:
     """Assemble all parts of a scene and state its constraints.
+
+    Parameters
+    ----------
+    scene, mesh : Scene, Mesh
+        The scene and its mesh.
+    checked : bool
+        Whether the mesh is known to be sound, as one is that was moved from a sound one.
 
     Raises
     ------
@@ -228,7 +258,8 @@ def build_model(scene: Scene, mesh: Mesh) -> Model:
     units = scene.bearing_units
     apart = [u.bearing.name for u in units if u.interface != "bonded" or u.foreign is not None]
     ties = [pair for unit in units for pair in tie_faces(unit)]
-    refuse_unsound(mesh, needed_faces(scene), [*apart, *ties, *open_sides(units)])
+    if not checked:
+        refuse_unsound(mesh, needed_faces(scene), [*apart, *ties, *open_sides(units)])
     n = len(mesh.points)
     stated = _Conditions(scene, mesh)
     stated.shaft()

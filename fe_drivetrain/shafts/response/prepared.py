@@ -6,6 +6,7 @@ reduction and set-up take about as long as a block of solutions.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
@@ -21,7 +22,7 @@ from fe_drivetrain.shafts.response.model import Model
 
 #: Of the energy norm. Forces on supports and their sums are linear in what an iteration leaves, and
 #: not squared as stiffness is: one digit more.
-_TOLERANCE = 0.1 * TOLERANCE
+STOP_AT = 0.1 * TOLERANCE
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +57,20 @@ class Prepared:
 
 
 _PREPARED: WeakKeyDictionary[Model, tuple[str, Prepared]] = WeakKeyDictionary()
+_BY: WeakKeyDictionary[Model, Callable[[Model, str, int], Prepared]] = WeakKeyDictionary()
+
+
+def prepare_by(model: Model, prepare: Callable[[Model, str, int], Prepared]) -> None:
+    """Let a model be made ready, when it is first asked for, with what neighbours have left.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    prepare : callable
+        Takes the arguments of `prepared`.
+    """
+    _BY[model] = prepare
 
 
 def prepared(model: Model, method: str, n_rhs: int) -> Prepared:
@@ -77,13 +92,15 @@ def prepared(model: Model, method: str, n_rhs: int) -> Prepared:
     """
     found = _PREPARED.get(model)
     if found is None or found[0] != method:
-        stiffness = model.stiffness
-        elimination = eliminate(model.constraints, model.n_dofs)
-        mesh = model.mesh
-        system = reduce(mesh.points, mesh.cells, stiffness, elimination, model.springs)
-        found = (
-            method,
-            Prepared(stiffness, elimination, factorise(system, method, n_rhs, _TOLERANCE)),
-        )
+        found = (method, _BY.get(model, prepared_alone)(model, method, n_rhs))
         _PREPARED[model] = found
     return found[1]
+
+
+def prepared_alone(model: Model, method: str, n_rhs: int) -> Prepared:
+    """The model with a solver of its own; arguments and errors of `prepared`."""
+    stiffness = model.stiffness
+    elimination = eliminate(model.constraints, model.n_dofs)
+    mesh = model.mesh
+    system = reduce(mesh.points, mesh.cells, stiffness, elimination, model.springs)
+    return Prepared(stiffness, elimination, factorise(system, method, n_rhs, STOP_AT))

@@ -1,6 +1,6 @@
 """Responses to unit loads: solved once, then any load history is one matrix product."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +18,7 @@ from fe_drivetrain.plots.figures import load_bars
 from fe_drivetrain.shafts.response.entering import Loads, entering
 from fe_drivetrain.shafts.response.model import LOADS, Model, stood_on
 from fe_drivetrain.shafts.response.part_forces import part_forces
-from fe_drivetrain.shafts.response.prepared import prepared
+from fe_drivetrain.shafts.response.prepared import Prepared, prepared
 
 
 @dataclass(frozen=True)
@@ -180,18 +180,7 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
     cases = np.column_stack([np.eye(n_loads), factors])
     F = loads @ cases
 
-    try:
-        ready = prepared(model, method, F.shape[1])
-        U, diagnostics = ready.solve(F)
-    except InputError as error:
-        if str(error) == SINGULAR and model.warnings:
-            raise InputError(f"{SINGULAR}: {'; '.join(model.warnings)}") from error
-        raise
-    internal = kernels.product(ready.stiffness, U)
-    multipliers = ready.elimination.multipliers(internal - F)
-    forces = part_forces(model, U, internal)
-    reactions = reactions_by_part(model, multipliers, forces, U, cases)
-
+    U, diagnostics, forces, reactions = _solved(model, method, F, cases)
     direct = np.concatenate([r[:, -1] for r in reactions.values()])
     superposed = np.concatenate([r[:, :-1] @ factors for r in reactions.values()])
     reactions = {name: r[:, :-1] for name, r in reactions.items()}
@@ -216,6 +205,72 @@ def unit_load_response(model: Model, method: str = "auto", seed: int = 0) -> Res
         diagnostics=diagnostics,
         entrance=model.scene.entrance,
     )
+
+
+def some_responses(
+    model: Model, columns: Sequence[int], method: str = "auto", forces: bool = True
+) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Reactions and motions under some of the unit loads of a model: fewer take less time.
+
+    Parameters
+    ----------
+    model : Model
+        The model.
+    columns : Sequence[int]
+        Which of its n unit loads.
+    method : str
+        Solver, see `solvers.solve`.
+    forces : bool
+        Whether reactions are asked for; else there are none.
+
+    Returns
+    -------
+    reactions, motions
+        (6, n) by name, as those of a `Response`; NaN for the other loads.
+
+    Raises
+    ------
+    InputError
+        As `unit_load_response`.
+    """
+    n = len(model.loads)
+    cases = np.eye(n)[:, columns]
+    F = model.unit_loads() @ cases
+    found: dict[str, Floats] = {}
+    if forces:
+        U, _, _, found = _solved(model, method, F, cases)
+    else:
+        U = _displaced(model, method, F)[1]
+    moved = {name: point.motion @ U for name, point in model.points.items()}
+    whole = []
+    for some in (found, moved):
+        rows = {name: np.full((6, n), np.nan) for name in some}
+        for name, values in some.items():
+            rows[name][:, columns] = values
+        whole.append(rows)
+    return whole[0], whole[1]
+
+
+def _solved(
+    model: Model, method: str, F: Floats, cases: Floats
+) -> tuple[Floats, Diagnostics, dict[str, Floats], dict[str, Floats]]:
+    """Displacements under loads, how they were found, forces in each part, and reactions."""
+    ready, U, diagnostics = _displaced(model, method, F)
+    internal = kernels.product(ready.stiffness, U)
+    multipliers = ready.elimination.multipliers(internal - F)
+    forces = part_forces(model, U, internal)
+    return U, diagnostics, forces, reactions_by_part(model, multipliers, forces, U, cases)
+
+
+def _displaced(model: Model, method: str, F: Floats) -> tuple[Prepared, Floats, Diagnostics]:
+    """The model with its solver, displacements under loads, and how they were found."""
+    try:
+        ready = prepared(model, method, F.shape[1])
+        return ready, *ready.solve(F)
+    except InputError as error:
+        if str(error) == SINGULAR and model.warnings:
+            raise InputError(f"{SINGULAR}: {'; '.join(model.warnings)}") from error
+        raise
 
 
 def reactions_by_part(

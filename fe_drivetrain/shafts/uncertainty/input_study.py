@@ -36,6 +36,7 @@ from fe_drivetrain.shafts.fidelity.shafts import condensed_shaft, meridian_shaft
 from fe_drivetrain.shafts.response.cached import whole_content
 from fe_drivetrain.shafts.response.entering import Factors, factor_values
 from fe_drivetrain.shafts.response.solution_keys import solved_by
+from fe_drivetrain.shafts.uncertainty.assembly_samples import assembly_of
 from fe_drivetrain.shafts.uncertainty.resolver import Resolver
 from fe_drivetrain.shafts.uncertainty.response_surface import (
     UnitSurface,
@@ -54,6 +55,9 @@ from fe_drivetrain.shafts.uncertainty.sampling import (
 
 LEVELS = (1, 2)
 """Cheap enough to be solved hundreds of times."""
+
+ASSEMBLY = 4
+"""Solved hundreds of times from what neighbouring samples leave, where it is asked for."""
 
 #: What the adviser is asked about where nothing that he knows was asked for.
 DEFAULT = "hub.stiffness.uz"
@@ -149,7 +153,8 @@ def study(
         Maximum error of the level, relative.
     level : int or None
         1 or 2; where not given, the cheapest of these that the adviser finds good enough for all
-        that was asked, and the better one where neither is.
+        that was asked, and the better one where neither is. Or 4, see `assembly_samples`: for
+        reactions, and for the stiffness at the hub.
     count, seed : int
         Number of samples and seed of the Latin hypercube.
     sobol : int
@@ -163,9 +168,12 @@ def study(
         A name is unknown or its number is zero, nothing is uncertain, or there is no such level.
     """
     check_spreads(scene)
+    if level == ASSEMBLY:
+        return _of_assembly(scene, asked, load, count, seed, sobol, report)
     if level is not None and level not in LEVELS:
         raise InputError(
-            f"{argument('level', level)} cannot be sampled: use 1 (beam) or 2 (meridian)"
+            f"{argument('level', level)} cannot be sampled: use 1 (beam), 2 (meridian) or "
+            f"{ASSEMBLY} (assembly of solids)"
         )
     stiffnesses = numbers(scene, [n for n in stiffness_names(scene) if n not in asked])
     wanted = numbers(scene, asked, load)
@@ -215,6 +223,33 @@ def study(
         soft_samples,
         surfaces,
         shares,
+    )
+
+
+def _of_assembly(
+    scene: Scene,
+    asked: Sequence[str],
+    load: Factors | Floats | None,
+    count: int,
+    seed: int,
+    sobol: int,
+    report: Progress,
+) -> Study:
+    """The study of samples that are assemblies of solids; arguments of `study`."""
+    at = assembly_of(scene, asked, load, report)
+    report("sensitivities")
+    slopes = sensitivities(scene, at.evaluate, list(scene.uncertainty))
+    content = _content(scene, ASSEMBLY, seed, asked, load)
+    samples = sample(scene, at.sampled, count, seed, report, content)
+    names = [number.name for number in at.numbers]
+    varying = [name for name in names if samples[name].varies]
+    shares = sobol_shares(scene, at.sampled, varying, sobol, seed, report, content) if sobol else {}
+    errors = {
+        name: ModelError(band.half_width, "its mesh, two coarser ones and recovered stresses")
+        for name, band in zip(names, at.bands, strict=True)
+    }
+    return Study(
+        scene, ASSEMBLY, [], at.numbers, list(asked), slopes, samples, errors, {}, {}, [], shares
     )
 
 
