@@ -90,11 +90,11 @@ def refined(machine: Machine, times: int) -> Machine:
         sections = shaft.sections
         if shaft.kind == "shaft" and times > 1 and sections is not None:
             count = 6 * times
-            sections = [
+            sections = tuple(
                 one.model_copy(update={"length": one.length / count})
                 for one in sections
                 for _ in range(count)
-            ]
+            )
         shafts.append(shaft.model_copy(update={"sections": sections}))
     return machine.model_copy(update={"shafts": shafts})
 

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.contact_forces import forces
-from fe_drivetrain.bearing.energy_loops import energies
 from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.bearing.newton import FIRMEST, MAX_STEPS, MAX_TRIALS, narrowed, next_firmness
 from fe_drivetrain.bearing.rolling import free_motions
+from fe_drivetrain.bearing.stored_energy import energy_of
 from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
@@ -363,7 +363,7 @@ class Rollers:
         """(k,) stored in all of them at motions (k, b, 5) [J]."""
         found = np.zeros(len(u))
         for kind, of in self._equal():
-            found += energies(kind, u[:, of].reshape(-1, 5)).reshape(-1, len(of)).sum(axis=1)
+            found += energy_of(kind, u[:, of].reshape(-1, 5)).reshape(-1, len(of)).sum(axis=1)
         return found
 
     def _equal(self) -> list[tuple[Bearing, list[int]]]:

@@ -308,7 +308,7 @@ def free_motions(equations: Equations) -> Floats:
         bent = np.sqrt(np.where(values > round_off, values, 0.0))[:, None] * vectors.T
         whole = np.vstack([wound, bent])
     if len(whole) > len(root):  # the same values and motions, from a square
-        whole = np.linalg.qr(whole, mode="r")
+        whole = np.asarray(np.linalg.qr(whole, mode="r"))
     _, sizes, basis = np.linalg.svd(whole, full_matrices=True)
     rank = int((sizes > len(root) * 1e-14 * sizes.max(initial=0.0)).sum())
     motions = basis[rank:].T / root[:, None]
