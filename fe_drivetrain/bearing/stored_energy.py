@@ -2,7 +2,8 @@
 
 For each lamina K w delta_+^(n+1) / (n+1), its share w and its approach delta as in the compiled
 loops; for a straight roller without laminae the integral of that along it; for a ball the same
-power of the growth of the distance between the groove centres.
+power of the growth of the distance between the groove centres. Compiled, since a run in time has it
+for each of its steps.
 """
 
 from __future__ import annotations
@@ -10,10 +11,33 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_drivetrain.bearing import kernels
 from fe_drivetrain.bearing.contact_forces import checked_motions, packed
 from fe_drivetrain.bearing.geometry import Bearing
+from fe_drivetrain.bearing.kernels import (
+    ARM,
+    AXIAL,
+    BALLS,
+    CLOSED,
+    COS,
+    DISTANCE,
+    EVEN,
+    EXPONENT,
+    GAP,
+    GROOVE,
+    KIND,
+    LEAN,
+    LENGTH,
+    NODES,
+    RADIAL,
+    SIN,
+    STIFF,
+    Packed,
+    PackedRow,
+    power,
+    row_of,
+)
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.compiled import njit
 
 _X, _W = np.polynomial.legendre.leggauss(10)
 
@@ -34,39 +58,67 @@ def energy_of(bearing: Bearing, displacements: ArrayLike) -> Floats:
         Energy (n,) [J].
     """
     u = checked_motions(bearing, displacements)
-    pack = packed(bearing)
     found = np.zeros(len(u))
-    for r, d in enumerate(pack.data):
-        of = slice(pack.first[r], pack.first[r + 1])
-        co, si = pack.cosines[of], pack.sines[of]
-        a = u[:, :1]
-        w = si * u[:, 2:3] - co * u[:, 1:2]
-        t = -(si * u[:, 3:4] + co * u[:, 4:5])
-        n, K = d[kernels.EXPONENT], d[kernels.STIFF]
-        if d[kernels.KIND] == kernels.BALLS:
-            axial = d[kernels.AXIAL] + a - d[kernels.GROOVE] * t
-            radial = d[kernels.RADIAL] + w + d[kernels.ARM] * t
-            grown = np.hypot(axial, radial) - d[kernels.DISTANCE]
-            each = np.maximum(grown, 0.0) ** (n + 1)
-        else:
-            b = a * d[kernels.SIN] + w * d[kernels.COS] + t * d[kernels.ARM] - d[kernels.GAP]
-            c = t * d[kernels.LEAN]
-            if d[kernels.KIND] == kernels.CLOSED:
-                each = _along(b, c * d[kernels.LENGTH], n + 1)
-            else:
-                row = kernels.row_of(pack, r)
-                near = b[..., None] + c[..., None] * row.xi - row.free
-                each = np.maximum(near, 0.0) ** (n + 1) @ row.shares
-        found += K / (n + 1) * each.sum(axis=1)
+    _energies(packed(bearing), np.ascontiguousarray(u), found)
     return found
 
 
-def _along(b: Floats, rise: Floats, p: float) -> Floats:
+@njit(cache=True, error_model="numpy")
+def _energies(bearing: Packed, u: Floats, found: Floats) -> None:  # pragma: no cover - compiled
+    for r in range(len(bearing.data)):
+        d = bearing.data[r]
+        row = row_of(bearing, r)
+        by = d[STIFF] / (d[EXPONENT] + 1.0)
+        half = 0.5 * d[LENGTH] * d[LEAN]
+        for i in range(bearing.first[r], bearing.first[r + 1]):
+            co, si = bearing.cosines[i], bearing.sines[i]
+            for k in range(len(u)):
+                a, w = u[k, 0], si * u[k, 2] - co * u[k, 1]
+                t = -(si * u[k, 3] + co * u[k, 4])
+                if d[KIND] == BALLS:
+                    found[k] += by * _of_ball(d, a, w, t)
+                    continue
+                b = a * d[SIN] + w * d[COS] + t * d[ARM] - d[GAP]
+                if b + abs(t) * half > 0.0:
+                    found[k] += by * _of_roller(row, b, t * d[LEAN])
+
+
+@njit(cache=True, error_model="numpy")
+def _of_ball(d: Floats, a: float, w: float, t: float) -> float:  # pragma: no cover - compiled
+    """Power n + 1 of the growth of a ball's distance."""
+    axial = d[AXIAL] + a - d[GROOVE] * t
+    radial = d[RADIAL] + w + d[ARM] * t
+    grown = np.sqrt(axial * axial + radial * radial) - d[DISTANCE]
+    return float(grown ** (d[EXPONENT] + 1.0)) if grown > 0.0 else 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def _of_roller(row: PackedRow, b: float, c: float) -> float:  # pragma: no cover - compiled
+    """Mean of the power n + 1 of the approach along a roller; its table is of n - 1."""
+    d, total = row.data, 0.0
+    if d[EVEN] == 1.0 and abs(c) * d[LENGTH] <= b:
+        for k in range(NODES):
+            z = b + c * row.nodes[k]
+            total += row.node_shares[k] * z * z * power(z, row.table)
+        return total
+    if d[KIND] == CLOSED:
+        return _along(b, c * d[LENGTH], d[EXPONENT] + 1.0)
+    for k in range(len(row.xi)):
+        z = b + c * row.xi[k] - row.free[k]
+        if z > 0.0:
+            total += row.shares[k] * z * z * power(z, row.table)
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def _along(b: float, rise: float, p: float) -> float:  # pragma: no cover - compiled
     """Mean of (b + rise x)_+^p over x from -1/2 to 1/2."""
-    half = 0.5 * np.abs(rise)
-    low, high = np.maximum(b - half, 0.0), np.maximum(b + half, 0.0)
-    smooth = low > 0.2 * high
-    steep = np.where(smooth, 1.0, 2.0 * half)
-    rim = (high ** (p + 1) - low ** (p + 1)) / ((p + 1) * np.where(steep > 0.0, steep, 1.0))
-    inside = np.maximum(b[..., None] + 0.5 * rise[..., None] * _X, 0.0) ** p @ (0.5 * _W)
-    return np.asarray(np.where(smooth, inside, rim))
+    half = 0.5 * abs(rise)
+    low, high = max(b - half, 0.0), max(b + half, 0.0)
+    if low <= 0.2 * high:
+        steep = 2.0 * half if half > 0.0 else 1.0
+        return float((high ** (p + 1.0) - low ** (p + 1.0)) / ((p + 1.0) * steep))
+    total = 0.0
+    for k in range(len(_X)):
+        total += 0.5 * _W[k] * (b + 0.5 * rise * _X[k]) ** p
+    return float(total)

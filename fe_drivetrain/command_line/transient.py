@@ -66,6 +66,7 @@ def transient_command(context: typer.Context, asked: TransientRequest) -> int:
             level=asked.level,
             condensed=asked.condensed,
             matrices=asked.matrices,
+            rollers=asked.on_rollers,
             quantity=asked.quantity,  # type: ignore[arg-type]
             tolerance=share,
             duration=asked.duration,

@@ -88,6 +88,14 @@ class TransientRequest:
     ] = None
     condensed: Condensed = False
     matrices: Matrices = False
+    on_rollers: Annotated[
+        bool,
+        typer.Option(
+            "--on-rollers",
+            help="A last level has bearings with a catalogue entry, those of planets too, on their "
+            "rollers in each step, laminae and clearance included. Under histories.",
+        ),
+    ] = False
     quantity: Annotated[
         str,
         typer.Option(

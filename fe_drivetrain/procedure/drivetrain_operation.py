@@ -23,11 +23,11 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies.equations import Equations, Loads, SpringLaws, summed, varying
 from fe_drivetrain.dynamics.bodies.levels import Level, assembly
-from fe_drivetrain.dynamics.bodies.steady_state import wind_up
 from fe_drivetrain.dynamics.time.base_motion import base_acceleration, on_base
 from fe_drivetrain.dynamics.time.energy_account import WORK
-from fe_drivetrain.dynamics.time.integration import integrate
+from fe_drivetrain.dynamics.time.integration import equal_steps
 from fe_drivetrain.dynamics.time.machines import slip_line
+from fe_drivetrain.dynamics.time.mechanism import Act
 from fe_drivetrain.dynamics.time.motion import Motion, State
 from fe_drivetrain.dynamics.time.running import Running
 from fe_drivetrain.dynamics.time.steady_turning import with_laws
@@ -78,13 +78,17 @@ class Operation:
         until : float, optional
             Time at which to end, the last sample's where left out [s].
         """
-        state = self.start
+        state, rollers = self.start, self.of.rollers
+        acting: list[Act] = [self.loads]
+        if rollers is not None:
+            acting.append(rollers.acting)
+        steps = equal_steps(self.equations, acting, step)
         end = self.end if until is None else min(until, self.end)
         turning = self.of.turning
         while end - state.time > 0.5 * step:
             count = min(AT_ONCE, round((end - state.time) / step))
-            found = integrate(self.equations, self.loads, (count - 1e-6) * step, step, start=state)
-            yield found
+            found = steps.motion(state, count)
+            yield found if rollers is None else rollers.felt(found)
             # turning back as a whole changes nothing, and keeps the digits of windings
             q = found.end.q
             angle = float(turning.to_rotor @ q) / float(turning.to_rotor @ turning.velocity)
@@ -134,7 +138,7 @@ def operation(of: Running, history: DriveHistory, slip: float) -> Operation:
     loads = summed(_at_hub(of, history, speed), pull, *of_weights(of, history, of.rotor_weight))
     equations = with_laws(of.equations, law)
     velocity = speed[0] / float(of.turning.to_rotor @ of.turning.velocity) * of.turning.velocity
-    found = wind_up(equations, loads.at(history.time[0]), velocity)
+    found = of.wind_up(equations, loads.at(history.time[0]), velocity)
     start = State(found.q, velocity, found.acceleration, float(history.time[0]))
     return Operation(of, equations, loads, start, float(history.time[-1]))
 
@@ -161,7 +165,13 @@ def shaken(of: Running, history: BaseHistory, slip: float) -> Operation:
     base = base_acceleration(on_base(of.system, bodies)[:, moved], time, a[:, moved], velocity)
     equations, acting = steady_run(of, slip)
     acting = [*acting, base.loads_on(equations)]
-    start = wound_up(equations, acting, of.turning.velocity, float(time[0]))
+    turning, begin = of.turning.velocity, float(time[0])
+    if of.rollers is None:
+        start = wound_up(equations, acting, turning, begin)
+    else:
+        load = np.asarray(np.sum([one.at(begin) for one in acting], axis=0))
+        found = of.wind_up(equations, load, turning, begin)
+        start = State(found.q, turning, found.acceleration, begin)
     return Operation(of, equations, summed(*acting), start, float(time[-1]))
 
 

@@ -51,6 +51,7 @@ from fe_drivetrain.studies.transient_findings import (
     state_figures,
 )
 from fe_drivetrain.studies.transient_histories import (
+    BASE,
     OPERATION,
     OperationOptions,
     driving_options,
@@ -122,6 +123,7 @@ def transient(
     level: str | None = None,
     condensed: bool = False,
     matrices: bool = False,
+    rollers: bool = False,
     quantity: Kind = "bearing",
     tolerance: float = 0.05,
     duration: float | None = None,
@@ -160,6 +162,9 @@ def transient(
     matrices : bool
         Whether the last level has gearbox bearings with a catalogue entry by the 6 x 6 stiffness of
         their rollers at rated torque, see `fe_drivetrain.dynamics.with_matrices`.
+    rollers : bool
+        Whether the last level has catalogued bearings on their rollers in each step, laminae and
+        clearance, under histories.
     quantity : str
         For which the level has to be enough: "torque", "mesh", "bearing".
     tolerance : float
@@ -197,13 +202,18 @@ def transient(
     by_histories = takes_histories(event, bool(loads))
     files = recorded_files(loads) if by_histories else []
     if not by_histories:  # said before a level is built
+        if rollers:
+            raise InputError(
+                f"bearings are on their rollers under histories, not in {event}: leave rollers "
+                f"out, or give {argument('loads')} with {OPERATION} or {BASE}"
+            )
         happens = event_of(event, stated)
         if isinstance(happens, BaseMoves):
             happens.require_file()
     steps, machine = Steps(report), machine_of(drivetrain)
     rated = rated_of(drivetrain, backlash)
     named = None if level is None else WORDS.get(level)
-    asking = {"condensed": condensed, "matrices": matrices}
+    asking = {"condensed": condensed, "matrices": matrices, "rollers": rollers}
     rungs = asked_rungs(drivetrain, machine, **asking, steps=steps)
     asked = _Asked(
         drivetrain,
@@ -412,6 +422,8 @@ def _operated(
             counted,
         )
         of_files = dict(zip(names, [begun, *rest], strict=True))
+    good = not any(one.not_converged for one in of_files.values())
+    runs[number] = replace(runs[number], converged=runs[number].converged and good)
     extremes = over_files(of_files, runs[number])
     more = {
         "files": names,

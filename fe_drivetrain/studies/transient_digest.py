@@ -103,6 +103,8 @@ class FileDigest:
         Mean wind speed [m/s]; NaN where the file has none.
     base : BaseFacts or None
         How the base moved; None where hub loads drove it.
+    not_converged : float
+        Steps in which Newton's method did not converge.
     """
 
     seconds: float
@@ -115,6 +117,7 @@ class FileDigest:
     parts: PartDigest | None = None
     wind: float = np.nan
     base: BaseFacts | None = None
+    not_converged: float = 0.0
 
     def equivalent(self, name: str, k: int, slope: float) -> float:
         """Damage-equivalent range of a channel at the reference frequency, of slope number k."""
@@ -247,9 +250,10 @@ def driven(
     end = moving.end if until is None else min(until, moving.end)
     every = max(1, round((end - float(history.time[0])) / asked.step) // KEPT)
     shown: list[tuple[Floats, Floats]] = []
-    seen = 0
+    seen = not_converged = 0
     for part in moving.pieces(asked.step, until):
         account.add(part)
+        not_converged += part.not_converged
         begin, values = 1 if seen else 0, channels.of(part)
         counter.add(part, values)
         times, values = part.times[begin:], values[begin:]
@@ -271,6 +275,7 @@ def driven(
         counter.digest(),
         np.nan if hub is None else hub.wind,
         history.facts if isinstance(history, BaseHistory) else None,
+        float(not_converged),
     )
     units = tuple(channels.unit(k) for k in range(len(channels.names)))
     times = np.concatenate([t for t, _ in shown])
@@ -354,6 +359,7 @@ def _content(
         "drivetrain": drivetrain_hash(machine),
         "level": rung.level.value,
         "gives": _plain(rung.flexible),
+        "rollers": rung.rollers,
         "rated": rated.plain(),
         "mapping": asked.names.content(),
         "skip": asked.skip,

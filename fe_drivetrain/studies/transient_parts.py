@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -117,7 +117,9 @@ class PartQuestion:
         digests = [one.parts for one in known if one.parts is not None]
         winds = [one.wind for one in known]
         times = times_a_year([one.seconds for one in digests], winds, self.options.site, files)
-        rating, pair = PartRating(self.drivetrain, begun.rung, torque, self.counted), None
+        # teeth share as springs let them: rollers in statics at each torque take minutes
+        rung, pair = replace(begun.rung, rollers=False), None
+        rating = PartRating(self.drivetrain, rung, torque, self.counted)
         if begun.parts is not None and begun.coarser is not None:
             pair = (begun.parts, begun.coarser)
         return rating.use("year", digests, times, pair)

@@ -75,6 +75,7 @@ class Rated:
             teeth=teeth,
             hub_loads=hub_loads,
             flexible=rung.flexible,
+            rollers=rung.rollers,
         )
 
 
@@ -357,14 +358,16 @@ class Prepared:
         """
         begin, account, counter = perf_counter(), EnergyAccount(), self.reader.counter()
         parts: list[tuple[Floats, Floats]] = []
+        converged = True
         for part in moving.pieces(step, moving.start.time + window):
             account.add(part)
+            converged = converged and part.converged
             first, values = 1 if parts else 0, self.channels.of(part)
             counter.add(part, values)
             parts.append((part.times[first:], values[first:]))
         found = np.concatenate([t for t, _ in parts]), np.concatenate([v for _, v in parts])
         nowhere = account.relative_imbalance
-        run = self._run(begin, step, found, {}, nowhere, True, np.zeros(len(found[0])))
+        run = self._run(begin, step, found, {}, nowhere, converged, np.zeros(len(found[0])))
         return replace(run, parts=counter.digest())
 
     def _run(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,7 +18,8 @@ from fe_drivetrain.drivetrain_file.mounted_bearings import clearance_change, row
 from fe_drivetrain.drivetrain_file.turning_parts import BearingData, PinData
 from fe_drivetrain.dynamics.bodies.advice import Operation, Rung
 from fe_drivetrain.dynamics.bodies.bodies import assemble
-from fe_drivetrain.dynamics.bodies.levels import assembly, steady_load
+from fe_drivetrain.dynamics.bodies.flexible import Flexible
+from fe_drivetrain.dynamics.bodies.levels import Assembly, assembly, steady_load
 from fe_drivetrain.dynamics.bodies.roller_seats import (
     OnRollers,
     Seat,
@@ -108,15 +109,10 @@ def on_catalogue(
     if not chosen:
         raise InputError("no bearing has a catalogue entry, whose rollers could carry: give some")
     kinds = {name: bearing_of(known[name], catalogues) for name in chosen}
-    housings = {k: v for k, v in rung.flexible.bearings.items() if k not in chosen}
-    gives = replace(rung.flexible, bearings=housings)
+    gives = without_housings(rung.flexible, chosen)
     found = assembly(machine, rung.level, azimuth, held_generator=True, flexible=gives)
     system = assemble(found.bodies, found.springs, found.superelements)
-    seats: list[Seat] = []
-    for name, bearing in kinds.items():
-        if name in found.seats:
-            seats.append(machine_seat(found, name, bearing))
-    seats += _of_planets(machine, rung, kinds, azimuth)
+    seats = seats_of(machine, found, kinds, gives, azimuth)
     wrench = np.array(hub, dtype=float)
     wrench[4] += operation.moment
     load = steady_load(machine, system, operation.torque, wrench)
@@ -146,11 +142,44 @@ def bearing_of(row: BearingData | PinData, catalogues: Sequence[str | Path] = ()
     return catalogue_bearing(row.catalogue, *catalogues, **changes)
 
 
-def _of_planets(
-    machine: MachineTable, rung: Rung, kinds: Mapping[str, Bearing], azimuth: float
+def without_housings(gives: Flexible, names: Iterable[str]) -> Flexible:
+    """What gives, without the own housings of bearings on rollers.
+
+    Parameters
+    ----------
+    gives : Flexible
+        What gives at a level.
+    names : iterable of str
+        Names of the bearings.
+    """
+    return replace(gives, bearings={k: v for k, v in gives.bearings.items() if k not in names})
+
+
+def seats_of(
+    machine: MachineTable,
+    found: Assembly,
+    kinds: Mapping[str, Bearing],
+    gives: Flexible,
+    azimuth: float = 0.0,
 ) -> list[Seat]:
-    """Seats of planets' bearings, in the order of the stages."""
-    found = []
+    """Seats of bearings on rollers: those in housings, then those of planets by stage.
+
+    Parameters
+    ----------
+    machine : MachineTable
+        The machine.
+    found : Assembly
+        Its assembly at a level.
+    kinds : mapping of str to Bearing
+        Bearings by the names of `catalogued`.
+    gives : Flexible
+        What gives there.
+    azimuth : float
+        Azimuth of the rotor's shaft [rad].
+    """
+    seats = [
+        machine_seat(found, name, bearing) for name, bearing in kinds.items() if name in found.seats
+    ]
     for number, stage in enumerate(machine.stages, start=1):
         if not isinstance(stage, PlanetaryData):
             continue
@@ -159,6 +188,6 @@ def _of_planets(
             if bearing is None:
                 continue
             own = {f"stage {number} pin {k + 1} {pin.name}".strip() for k in range(stage.planets)}
-            seats = planet_seats(machine, number, bearing, azimuth, rung.flexible)
-            found += [one for one in seats if one.name in own]
-    return found
+            of_all = planet_seats(machine, number, bearing, azimuth, gives)
+            seats += [one for one in of_all if one.name in own]
+    return seats

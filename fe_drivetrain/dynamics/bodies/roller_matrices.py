@@ -25,7 +25,7 @@ from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.drivetrain_file.turning_parts import diagonal
 from fe_drivetrain.dynamics.bodies.advice import UNCONDENSED, Operation, Rung
 from fe_drivetrain.dynamics.bodies.catalogue_seats import catalogued, main_names, on_catalogue
-from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs, plain_rungs, rungs_of
+from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs, plain_rungs, rungs_of, with_rollers
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system, steady_load
 from fe_drivetrain.dynamics.bodies.machine import Machine, rated_torque
 from fe_drivetrain.dynamics.bodies.roller_seats import OnRollers, rollers_of
@@ -202,6 +202,7 @@ def asked_rungs(
     *,
     condensed: bool = False,
     matrices: bool = False,
+    rollers: bool = False,
     steps: Clock | None = None,
 ) -> Rungs:
     """The ladder of a drivetrain that a study is asked for.
@@ -217,18 +218,22 @@ def asked_rungs(
     matrices : bool
         Whether its last level has gearbox bearings by the stiffness of their rollers at rated
         torque, see `with_matrices`.
+    rollers : bool
+        Whether the last level has catalogued bearings on their rollers, see `with_rollers`.
     steps : Clock or None
         Times each step.
 
     Raises
     ------
     InputError
-        See `rungs_of` and `with_matrices`, or no rated torque is known.
+        See `rungs_of`, `with_rollers` and `with_matrices`, or no rated torque is known.
     """
     if condensed:
         rungs = rungs_of(drivetrain, steps=steps)
     else:
         rungs = Rungs(plain_rungs(drivetrain, machine), {})
+    if rollers:
+        rungs = with_rollers(rungs, machine)
     if not matrices:
         return rungs
     rated = rated_torque(drivetrain, machine)

@@ -18,7 +18,7 @@ from fe_drivetrain.bearing.geometry import Bearing
 from fe_drivetrain.bearing.newton import FIRMEST, MAX_STEPS, MAX_TRIALS, narrowed, next_firmness
 from fe_drivetrain.bearing.rolling import free_motions
 from fe_drivetrain.bearing.stored_energy import energy_of
-from fe_drivetrain.common.arrays import Bools, Floats, chunks
+from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots, scaled_to_unit_diagonal
 from fe_drivetrain.common.short_repr import short_repr
@@ -363,9 +363,7 @@ class Rollers:
         """(k,) stored in all of them at motions (k, b, 5) [J]."""
         found = np.zeros(len(u))
         for kind, of in self._equal():
-            for part in chunks(len(u), 512):
-                each = energy_of(kind, u[part][:, of].reshape(-1, 5))
-                found[part] += each.reshape(-1, len(of)).sum(axis=1)
+            found += energy_of(kind, u[:, of].reshape(-1, 5)).reshape(-1, len(of)).sum(axis=1)
         return found
 
     def _equal(self) -> list[tuple[Bearing, list[int]]]:

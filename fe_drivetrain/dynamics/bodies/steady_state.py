@@ -298,13 +298,17 @@ def free_motions(equations: Equations) -> Floats:
     root = np.sqrt(np.diag(equations.mass))
     s = equations.springs
     wound = np.sqrt(s.stiffness)[:, None] * s.rows / root
-    values, vectors = linalg.eigh(
-        scaled_to_unit_diagonal(equations.extra, equations.mass.diagonal())
-    )
-    # a free superelement leaves round-off, whose root would be far above that of the springs
-    round_off = len(root) * np.finfo(float).eps * np.abs(values).max(initial=0.0)
-    bent = np.sqrt(np.where(values > round_off, values, 0.0))[:, None] * vectors.T
-    whole = np.vstack([wound, bent]) if equations.extra.any() else wound
+    whole = wound
+    if equations.extra.any():
+        values, vectors = linalg.eigh(
+            scaled_to_unit_diagonal(equations.extra, equations.mass.diagonal())
+        )
+        # a free superelement leaves round-off, whose root would be far above that of the springs
+        round_off = len(root) * np.finfo(float).eps * np.abs(values).max(initial=0.0)
+        bent = np.sqrt(np.where(values > round_off, values, 0.0))[:, None] * vectors.T
+        whole = np.vstack([wound, bent])
+    if len(whole) > len(root):  # the same values and motions, from a square
+        whole = np.asarray(np.linalg.qr(whole, mode="r"))
     _, sizes, basis = np.linalg.svd(whole, full_matrices=True)
     rank = int((sizes > len(root) * 1e-14 * sizes.max(initial=0.0)).sum())
     motions = basis[rank:].T / root[:, None]

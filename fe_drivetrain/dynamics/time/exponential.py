@@ -25,10 +25,19 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.dynamics.bodies.equations import Equations, Loads
-from fe_drivetrain.dynamics.time.law_loops import CHANGE, ZR, D, Laws, Z, law_forces, touching
+from fe_drivetrain.dynamics.time.law_loops import (
+    CHANGE,
+    PIVOT,
+    ZR,
+    D,
+    Laws,
+    Z,
+    law_forces,
+    touching,
+)
 from fe_drivetrain.dynamics.time.mechanism import mechanism_of
 from fe_drivetrain.dynamics.time.motion import State, at_rest
-from fe_drivetrain.dynamics.time.newton_steps import MAX_STEPS, solve
+from fe_drivetrain.dynamics.time.newton_steps import MAX_STEPS, factorise, solve
 from fe_drivetrain.dynamics.time.schemes import AVERAGE
 from fe_drivetrain.dynamics.time.stepper import TOLERANCE, prepared
 
@@ -88,7 +97,7 @@ class Memory(NamedTuple):
 
     ``values`` (s, 12, r) and ``laws`` (4, q) as `law_forces` takes them, ``tangents`` (s, r, r);
     ``forces`` (s r), node by node; ``vectors`` (2, 2 r (s - 1)) as `FREE` and `FOUND`; ``scale``
-    (r,) maximum of each row so far; ``left`` (12, r (s - 1)) and ``square`` of Newton's method;
+    (r,) maximum of each row so far; ``left`` (13, r (s - 1)) and ``square`` of Newton's method;
     ``last`` (s,); ``nodes`` (s,).
     """
 
@@ -177,7 +186,7 @@ def _memory(rows: Floats, laws: Laws, begin: State) -> Memory:
         np.zeros(s * r),
         np.zeros((2, 2 * many)),
         np.abs(values[0, Z]),
-        np.zeros((12, many)),
+        np.zeros((PIVOT + 1, many)),
         np.zeros((many, many)),
         np.zeros(s),
         NODES,
@@ -355,6 +364,7 @@ def _newton(
         if _unbalance(w, m.values, m.forces, m.vectors, m.scale, m.left) <= tolerance:
             return
         _jacobian(w, m.tangents, m.square)
+        factorise(m.square, m.left)
         solve(m.square, m.left)
         for i in range(1, s):
             for k in range(r):

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies.equations import Equations
 from fe_drivetrain.dynamics.time.brakes import Brake
 from fe_drivetrain.dynamics.time.loop_forms import Stop
@@ -90,9 +91,9 @@ def integrate(
     mechanism = mechanism_of(equations, acting, driven)
     begin = start or at_rest(equations)
     if not (mechanism.brakes or isinstance(step, StepControl)):
-        span = (ceil(duration / step * (1.0 - 1e-12)) if step > 0.0 else 0, every)
-        stepper = prepared(mechanism, step, scheme)
-        return _equal_steps(stepper, begin, span, watch, tolerance)
+        steps = ceil(duration / step * (1.0 - 1e-12)) if step > 0.0 else 0
+        equal = EqualSteps(prepared(mechanism, step, scheme))
+        return equal.motion(begin, steps, every, watch, tolerance)
     pace = _pace(step, scheme, tolerance)
     if not isinstance(step, StepControl):
         duration = ceil(duration / step * (1.0 - 1e-12)) * step
@@ -105,21 +106,61 @@ def integrate(
     return replace(motion, q=motion.q @ seen.T, velocity=motion.velocity @ seen.T)
 
 
-def _equal_steps(
-    stepper: Stepper,
-    begin: State,
-    span: tuple[int, int],
-    watch: ArrayLike | None,
-    tolerance: float,
-) -> Motion:
-    """Equal steps without events, in one call of the loop."""
-    (steps, every), mechanism = span, stepper.mechanism
-    mechanism.check_base(begin.time, begin.time + steps * stepper.model.matrices.dt)
-    none = np.zeros((0, len(begin.q)))
-    state = mechanism.settled(begin, mechanism.loads)
-    return run_steps(
-        stepper, mechanism.loads, state, steps, every, watch, Stop(none, np.zeros(0)), tolerance
-    ).motion
+@dataclass(frozen=True)
+class EqualSteps:
+    """Equal steps without events, whose matrices are made once; see `equal_steps`."""
+
+    __repr__ = short_repr
+
+    stepper: Stepper
+
+    def motion(
+        self,
+        begin: State,
+        steps: int,
+        every: int = 1,
+        watch: ArrayLike | None = None,
+        tolerance: float = TOLERANCE,
+    ) -> Motion:
+        """Some steps, in one call of the loop.
+
+        Parameters
+        ----------
+        begin : State
+            State at the beginning.
+        steps, every : int
+            Number of steps, and of steps from record to record.
+        watch, tolerance
+            As of `integrate`.
+        """
+        mechanism = self.stepper.mechanism
+        mechanism.check_base(begin.time, begin.time + steps * self.stepper.model.matrices.dt)
+        none = np.zeros((0, len(begin.q)))
+        state = mechanism.settled(begin, mechanism.loads)
+        stop = Stop(none, np.zeros(0))
+        return run_steps(
+            self.stepper, mechanism.loads, state, steps, every, watch, stop, tolerance
+        ).motion
+
+
+def equal_steps(
+    equations: Equations, acting: Acting, step: float, scheme: Scheme = AVERAGE
+) -> EqualSteps:
+    """Equal steps of what moves and acts, for a motion in pieces.
+
+    Parameters
+    ----------
+    equations, acting, scheme
+        As of `integrate`, without brakes.
+    step : float
+        Length of a step [s].
+
+    Raises
+    ------
+    InputError
+        The step is not positive, or what acts does not fit the equations or each other.
+    """
+    return EqualSteps(prepared(mechanism_of(equations, acting), step, scheme))
 
 
 @dataclass(frozen=True)

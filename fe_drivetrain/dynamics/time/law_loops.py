@@ -24,10 +24,10 @@ and error."""
 """Values of a law, as `SpringLaws` has them."""
 
 
-Z, NEW, ZR, RATE, D, D1, ZA, BASE, FREE, RESIDUAL, CHANGE, SCALE = places(12)
+Z, NEW, ZR, RATE, D, D1, ZA, BASE, FREE, RESIDUAL, CHANGE, SCALE, PIVOT = places(13)
 """Vectors of r, at the beginning and the end of a step: values of the rows, their rates, forces
 beyond the matrices; accelerations and values at the beginning by the rows of the end; values that
-the matrix gives, residual, change, and maximum so far."""
+the matrix gives, residual, change, maximum so far, and rows that Gauss exchanges."""
 
 DAMPER, DAMPER1, SPRING, DAMPS = places(4)
 """Vectors of q: parts of d of dampers at the beginning and the end of a step, forces, contact."""

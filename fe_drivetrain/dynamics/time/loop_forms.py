@@ -60,14 +60,13 @@ class Model(NamedTuple):
 
 
 class Kept(NamedTuple):
-    """Records (k, ...); ``watch`` (1, w, n) are rows whose values and rates are recorded.
+    """Records (k, ...).
 
-    ``places`` and ``rates`` (k, w); ``forces`` (k, q) of laws, ``along`` (k, m) of linear springs
+    ``places`` and ``rates`` (k, n); ``forces`` (k, q) of laws, ``along`` (k, m) of linear springs
     where rows turn, ``bearings`` (2, k, 5 b) motions and loads, ``gripped`` (k, h) accelerations
     along held motions by all forces, ``energies`` (k, 5) as `KINETIC` ...
     """
 
-    watch: Floats
     times: Floats
     places: Floats
     rates: Floats
@@ -90,7 +89,7 @@ and what is summed."""
 class Work(NamedTuple):
     """Memory of the loop.
 
-    ``vectors`` (17, n), ``rows`` (12, r) and ``laws`` (4, q) as `U` ..., `Z` ... and `DAMPER` ...;
+    ``vectors`` (17, n), ``rows`` (13, r) and ``laws`` (4, q) as `U` ..., `Z` ... and `DAMPER` ...;
     ``squares`` (2, r, r) tangent and Jacobian; ``bearings`` (2, b, 5, 5) tangents and dampers,
     ``resisted`` (2, 5 b) by dampers at the beginning and the end of a step; ``sums`` (2, 9) now
     and at its beginning, as `STORED` ...
@@ -114,7 +113,7 @@ def memory(model: Model, bearings: int, springs: int, loads: int) -> Work:
     return Work(
         np.zeros((1, loads)),
         np.zeros((17, n)),
-        np.zeros((12, r)),
+        np.zeros((13, r)),
         np.zeros((4, q)),
         np.zeros((2, r, r)),
         np.zeros((2, bearings, 5, 5)),

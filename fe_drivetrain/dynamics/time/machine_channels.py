@@ -17,7 +17,6 @@ from fe_drivetrain.dynamics.bodies.damping_ratios import element_of, mesh_names
 from fe_drivetrain.dynamics.bodies.equations import CONSTANT
 from fe_drivetrain.dynamics.bodies.flexible import MOUNT, Housing
 from fe_drivetrain.dynamics.bodies.levels import assembly
-from fe_drivetrain.dynamics.bodies.steady_state import wind_up
 from fe_drivetrain.dynamics.bodies.system import bearing_springs
 from fe_drivetrain.dynamics.time.motion import Motion
 from fe_drivetrain.dynamics.time.running import Running
@@ -164,10 +163,11 @@ def _with_rated(made: Channels, of: Running) -> Channels:
     e = replace(e, springs=replace(e.springs, wave=np.full(len(e.springs.rows), CONSTANT)))
     load = turning.torque * turning.to_rotor - turning.generator_torque * turning.to_generator
     load = load if turning.beside is None else load + turning.beside
-    q = wind_up(e, load, turning.velocity).q
+    q = of.wind_up(e, load, turning.velocity).q
     stretch = e.springs.rows @ q
     gap = np.clip(stretch, e.springs.lower, e.springs.upper)
     forces = e.springs.stiffness * (stretch - gap)
+    forces = forces if of.rollers is None else of.rollers.at(forces, q)
     rated = made._values(forces[None], q[None], turning.velocity[None])[0]
     turned = np.array([kind != "bearing" for kind in made.kinds]) & (rated < 0.0)
     sign = np.where(turned, -1.0, 1.0)

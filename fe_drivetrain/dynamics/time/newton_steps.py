@@ -15,6 +15,7 @@ from fe_drivetrain.dynamics.time.law_loops import (
     D1,
     FREE,
     NEW,
+    PIVOT,
     RATE,
     RESIDUAL,
     SCALE,
@@ -27,26 +28,42 @@ from fe_drivetrain.dynamics.time.loop_forms import MOVED_ROW, PHASE_ROW, TILTED_
 #: Newton steps after which a time step counts as not converged; half of them at full length.
 MAX_STEPS = 40
 
+#: Residual over that before, up to which the tangent before is kept; on rollers alone.
+ENOUGH = 0.03
+
 
 @inner_loop
-def solve(A: Floats, y: Floats) -> None:  # pragma: no cover - compiled
-    """A^-1 y[CHANGE] into it, A overwritten: Gauss with row pivots; small, without a library."""
+def factorise(A: Floats, y: Floats) -> None:  # pragma: no cover - compiled
+    """Factors in place of A, by Gauss with row pivots, which go to y[PIVOT]; without a library."""
     n = y.shape[1]
     for k in range(n):
         p = k
         for i in range(k + 1, n):
             if abs(A[i, k]) > abs(A[p, k]):
                 p = i
+        y[PIVOT, k] = p
         if p != k:
-            for j in range(k, n):
+            for j in range(n):
                 A[k, j], A[p, j] = A[p, j], A[k, j]
-            y[CHANGE, k], y[CHANGE, p] = y[CHANGE, p], y[CHANGE, k]
         for i in range(k + 1, n):
             f = A[i, k] / A[k, k]
+            A[i, k] = f
             if f != 0.0:
                 for j in range(k + 1, n):
                     A[i, j] -= f * A[k, j]
-                y[CHANGE, i] -= f * y[CHANGE, k]
+
+
+@inner_loop
+def solve(A: Floats, y: Floats) -> None:  # pragma: no cover - compiled
+    """A^-1 y[CHANGE] into it, by the factors."""
+    n = y.shape[1]
+    for k in range(n):
+        p = int(y[PIVOT, k])
+        if p != k:
+            y[CHANGE, k], y[CHANGE, p] = y[CHANGE, p], y[CHANGE, k]
+    for k in range(n):
+        for j in range(k):
+            y[CHANGE, k] -= A[k, j] * y[CHANGE, j]
     for k in range(n - 1, -1, -1):
         for j in range(k + 1, n):
             y[CHANGE, k] -= A[k, j] * y[CHANGE, j]
@@ -124,19 +141,26 @@ def newton(
 ) -> None:  # pragma: no cover - compiled
     """Values of the rows at the end of a step, and the forces there.
 
-    With bearings, whose rollers leave and come back, changes are as short as the residual falls.
+    With bearings, whose rollers leave and come back, changes are as short as the residual falls,
+    and begin where motions would go on to: what the matrix gives is far from where rollers hold.
+    Their tangent is kept while the residual falls fast.
     """
     y, S, bearings = w.rows, model.matrices.compliance, w.resisted.shape[1] > 0
+    dt = model.matrices.dt
     share, r = 1.0 - model.matrices.coefficients[7], len(S)
     tangent, A = w.squares[0], w.squares[1]
     for i in range(r):
         y[NEW, i] = y[FREE, i]
+        if bearings:
+            y[NEW, i] = y[BASE, i] + dt * (y[ZR, i] + 0.5 * dt * y[ZA, i])
     _forces_at(model, rolling, t, w, tangent)
     _residual(share, S, y)
-    count, converged = 0, False
+    count, converged, fresh = 0, False, True
     while not converged and count < MAX_STEPS:
         before = _unbalance(model.kinds, y) if bearings else 0.0
-        _jacobian(share, S, tangent, A)
+        if fresh:
+            _jacobian(share, S, tangent, A)
+            factorise(A, y)
         for i in range(r):
             y[CHANGE, i] = y[RESIDUAL, i]
         solve(A, y)
@@ -155,9 +179,13 @@ def newton(
         while bearings:
             after = _unbalance(model.kinds, y)
             if after <= before or length < 1e-3 or before < tolerance:
+                # as good as a new tangent, for a fraction of its time
+                fresh = after > ENOUGH * before
+                # the next change is no longer than the residual: springs and rollers only resist
+                converged = converged or after <= tolerance
                 break
             length *= 0.5
-            converged = False
+            converged, fresh = False, True
             for i in range(r):
                 y[NEW, i] -= length * y[CHANGE, i]
             _forces_at(model, rolling, t, w, tangent)

@@ -11,6 +11,7 @@ from fe_drivetrain.common.components import GRAVITY
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.turning_parts import DampingRatios
+from fe_drivetrain.dynamics.bodies.catalogue_seats import catalogued, without_housings
 from fe_drivetrain.dynamics.bodies.damping_ratios import (
     ASSUMED_RATIOS,
     condensed_seconds,
@@ -25,8 +26,9 @@ from fe_drivetrain.dynamics.bodies.gearbox_mount import assumed_inertia, mass_in
 from fe_drivetrain.dynamics.bodies.levels import Level, machine_system, shaft_ends
 from fe_drivetrain.dynamics.bodies.machine import Machine
 from fe_drivetrain.dynamics.bodies.meshing import machine_meshing, varying_equations
-from fe_drivetrain.dynamics.bodies.steady_state import free_motions
+from fe_drivetrain.dynamics.bodies.steady_state import WoundUp, free_motions, wind_up
 from fe_drivetrain.dynamics.bodies.system import System
+from fe_drivetrain.dynamics.time.running_rollers import RunningRollers, on_rollers
 from fe_drivetrain.dynamics.time.steady_turning import Turning
 
 LIGHT = 1e-3
@@ -56,6 +58,8 @@ class Running:
         Rated torque and speed.
     rotor_weight : float
         Weight of the rotor [N].
+    rollers : RunningRollers or None
+        Rollers of catalogued bearings, which act beside the equations; None where springs do.
     """
 
     __repr__ = short_repr
@@ -67,6 +71,7 @@ class Running:
     equations: Equations
     turning: Turning
     rotor_weight: float
+    rollers: RunningRollers | None = None
 
     def row(self, body: str) -> Floats:
         """(n,) row to the angle of a body, and load of a unit torque on it.
@@ -101,6 +106,29 @@ class Running:
             raise InputError(f"a brake on {on!r}, which does not turn: put it on another shaft")
         return row
 
+    def wind_up(
+        self, equations: Equations, load: Floats, velocity: Floats, time: float = 0.0
+    ) -> WoundUp:
+        """State without vibration, on rollers where the machine is on these.
+
+        Parameters
+        ----------
+        equations : Equations
+            Its equations of motion, with whatever laws act beside them.
+        load, velocity : ndarray, (n,)
+            Load, and velocities of steady turning.
+        time : float
+            Time [s].
+
+        Raises
+        ------
+        InputError
+            See `steady_state.wind_up`, or rollers find no equilibrium.
+        """
+        if self.rollers is None:
+            return wind_up(equations, load, velocity, time=time)
+        return self.rollers.wind_up(equations, load, velocity, time)
+
     @property
     def inertia(self) -> float:
         """Inertia of all that turns, referred to the rotor [kg m^2]."""
@@ -119,6 +147,7 @@ def running(
     teeth: bool = False,
     hub_loads: bool = False,
     flexible: Flexible | None = None,
+    rollers: bool = False,
 ) -> Running:
     """A machine that turns steadily at a level.
 
@@ -158,13 +187,17 @@ def running(
         one = tuple(stage.model_copy(update={"slices": 1}) for stage in machine.stages)
         machine = machine.model_copy(update={"stages": one})
     gives = flexible or Flexible()
+    if rollers:
+        gives = without_housings(gives, catalogued(machine))
     if teeth or backlash:
         gives = _with_light_housing(machine, gives)
     system = machine_system(machine, level, flexible=gives)
     whole = system.gravity(np.array([0.0, 0.0, -GRAVITY]))
     if hub_loads and level is not Level.TORSIONAL:
         system = _light_rotor(machine, system)
-    system = with_damping_ratios(machine, system, damping)
+    system, found = with_damping_ratios(machine, system, damping), None
+    if rollers:
+        system, found = on_rollers(machine, level, gives, system)
     meshing = machine_meshing(machine, rotor_speed, contact_ratios(machine)) if teeth else {}
     equations = varying_equations(system, meshing, rotor_speed, by="angle")
     if backlash:
@@ -173,7 +206,8 @@ def running(
         condensed = condensed_seconds(machine, damping) * system.extra
         equations = replace(equations, damping=equations.damping + condensed)
     to_rotor = system.load_on("rotor", _ABOUT_AXIS)
-    motion = free_motions(varying_equations(system, {}))[:, 0]
+    whole_springs = system if found is None else found.on_springs
+    motion = free_motions(varying_equations(whole_springs, {}))[:, 0]
     velocity = rotor_speed * motion / float(to_rotor @ motion)
     return Running(
         machine,
@@ -190,6 +224,7 @@ def running(
             None if level is Level.TORSIONAL else whole,
         ),
         GRAVITY * machine.rotor.apart[0],
+        found,
     )
 
 

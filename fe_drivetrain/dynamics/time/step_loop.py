@@ -72,12 +72,14 @@ from fe_drivetrain.dynamics.time.loop_forms import (
     Work,
 )
 from fe_drivetrain.dynamics.time.newton_steps import newton, scales
+from fe_drivetrain.dynamics.time.sparse_steps import product, solve
 from fe_drivetrain.dynamics.time.turning_rows import (
     DAMPING,
     DRIFT,
     INVERSE,
     MASS,
     STIFFNESS,
+    Matrices,
     Turning,
     turn,
 )
@@ -106,6 +108,23 @@ def _times(
         for column in range(matrices.shape[2]):
             total += matrices[k, row, column] * x[i, column]
         y[j, row] = total
+
+
+@inner_loop
+def _square(
+    m: Matrices, k: int, x: Floats, i: int, y: Floats, j: int
+) -> None:  # pragma: no cover - compiled
+    """Square matrix k by ``x[i]`` into ``y[j]``, by its entries or its factors where these are few.
+
+    A solution overwrites `TERM2`.
+    """
+    known = len(m.sparse.starts)
+    if k == INVERSE and known > INVERSE:
+        solve(m.sparse, x, i, TERM2, j)
+    elif k < INVERSE and known > 0:
+        product(m.sparse, k, x, i, y, j)
+    else:
+        _times(m.squares, k, x, i, y, j)
 
 
 @inner_loop
@@ -157,7 +176,7 @@ def _free_step(
         _inside(model, w, INSIDE)
     if turning is not None:
         turn(turning, m, t)
-        _times(m.squares, STIFFNESS, x, U, x, KU)
+        _square(m, STIFFNESS, x, U, x, KU)
         _times(m.squares, DRIFT, x, U, x, DU)
         if r > 0:
             _times(m.rows, 0, x, U, y, BASE)
@@ -169,14 +188,14 @@ def _free_step(
         if af != 0.0:
             x[RHS, i] += af * (x[OUTSIDE0, i] - x[INSIDE, i])
         x[TERM, i] = (am - (1.0 - am) * b[3]) * x[A, i] - (1.0 - am) * b[2] * x[V, i]
-    _times(m.squares, MASS, x, TERM, x, TERM2)
+    _square(m, MASS, x, TERM, x, TERM2)
     for i in range(n):
         x[RHS, i] -= x[TERM2, i]
         x[TERM, i] = (1.0 - af) * (b[4] * x[V, i] + b[5] * x[A, i])
-    _times(m.squares, DAMPING, x, TERM, x, TERM2)
+    _square(m, DAMPING, x, TERM, x, TERM2)
     for i in range(n):
         x[RHS, i] -= x[TERM2, i]
-    _times(m.squares, INVERSE, x, RHS, x, STEP)
+    _square(m, INVERSE, x, RHS, x, STEP)
     if r > 0:
         _times(m.rows, 0, x, STEP, y, FREE)
         for i in range(r):
@@ -244,9 +263,9 @@ def _end_step(model: Model, w: Work) -> float:  # pragma: no cover - compiled
         taken += 0.5 * x[CV, i] * step
     _hold(m.held, x, V)
     _hold(m.held, x, A)
-    _times(m.squares, DAMPING, x, V, x, CV)
-    _times(m.squares, MASS, x, V, x, MV)
-    _times(m.squares, STIFFNESS, x, U, x, KU)
+    _square(m, DAMPING, x, V, x, CV)
+    _square(m, MASS, x, V, x, MV)
+    _square(m, STIFFNESS, x, U, x, KU)
     return taken + 0.5 * _product(x, CV, x, STEP)
 
 
@@ -280,9 +299,9 @@ def _begin(
     if turning is not None:
         turn(turning, m, t)
         _times(m.squares, DRIFT, x, U, x, DU)
-    _times(m.squares, MASS, x, V, x, MV)
-    _times(m.squares, DAMPING, x, V, x, CV)
-    _times(m.squares, STIFFNESS, x, U, x, KU)
+    _square(m, MASS, x, V, x, MV)
+    _square(m, DAMPING, x, V, x, CV)
+    _square(m, STIFFNESS, x, U, x, KU)
     if y.shape[1] > 0:
         _times(m.rows, 0, x, U, y, Z)
         _times(m.rows, 0, x, V, y, ZR)
@@ -309,8 +328,8 @@ def _record(
     """Record k of the motion."""
     x, y, first = w.vectors, w.rows, model.bearing
     kept.times[k] = t
-    _times(kept.watch, 0, x, U, kept.places, k)
-    _times(kept.watch, 0, x, V, kept.rates, k)
+    _copy(x, U, kept.places, k)
+    _copy(x, V, kept.rates, k)
     _copy(w.laws, SPRING, kept.forces, k)
     _copy(w.along, 0, kept.along, k)
     for i in range(kept.bearings.shape[2]):

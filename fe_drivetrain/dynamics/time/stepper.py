@@ -33,6 +33,8 @@ from fe_drivetrain.dynamics.time.loop_forms import (
 from fe_drivetrain.dynamics.time.mechanism import Mechanism
 from fe_drivetrain.dynamics.time.motion import NO_BEARINGS, STANDING, BearingHistory, Motion, State
 from fe_drivetrain.dynamics.time.schemes import Scheme
+from fe_drivetrain.dynamics.time.sparse_steps import NO_SPARSE, sparse_of
+from fe_drivetrain.dynamics.time.spring_forces import SpringForces, spring_forces
 from fe_drivetrain.dynamics.time.step_loop import march
 from fe_drivetrain.dynamics.time.turning_rows import Matrices, Turning, constrain
 
@@ -54,6 +56,8 @@ class Stepper:
         Rolling bearings.
     turning : Turning or None
         Rows that turn, where there are some.
+    springs : SpringForces
+        Forces of linear springs whose rows stand, by what was recorded.
     """
 
     __repr__ = short_repr
@@ -62,6 +66,7 @@ class Stepper:
     model: Model
     rolling: Rolling
     turning: Turning | None
+    springs: SpringForces
 
 
 @dataclass(frozen=True)
@@ -166,7 +171,8 @@ def prepared(
         places.bearing_drift,
     )
     model = Model(matrices, _laws(mechanism, places), kinds, places.bearings)
-    return Stepper(mechanism, model, rolling, _turning(mechanism, places))
+    turning = _turning(mechanism, places)
+    return Stepper(mechanism, model, rolling, turning, spring_forces(mechanism.equations.springs))
 
 
 def _matrices(
@@ -196,6 +202,9 @@ def _matrices(
         np.array([rows, columns.T]),
         np.ascontiguousarray(rows @ columns),
         still,
+        NO_SPARSE
+        if mechanism.carriers is not None
+        else sparse_of([e.mass, C, K], None if still.size else A),
     )
 
 
@@ -299,8 +308,7 @@ def run_steps(
     piece : Piece
     """
     n, springs, b = len(begin.q), stepper.mechanism.equations.springs, len(stepper.rolling.seconds)
-    seen = np.eye(n) if watch is None else np.atleast_2d(np.asarray(watch, dtype=np.float64))
-    kept = _records(stepper, seen, steps // every + 1)
+    kept = _records(stepper, n, steps // every + 1)
     counts: Ints = np.zeros(3, dtype=np.int64)
     drive = Drive(
         np.ascontiguousarray(loads.patterns)[None],
@@ -322,21 +330,20 @@ def run_steps(
         State(q.copy(), v.copy(), a.copy(), begin.time + steps * dt)
         for (q, v, a), steps in ((state[U : A + 1], done), (state[U0 : A0 + 1], done - 1))
     )
-    motion = _motion(stepper, kept, done // every + 1, len(seen), counts, end)
+    seen = None if watch is None else np.atleast_2d(np.asarray(watch, dtype=np.float64))
+    motion = _motion(stepper, kept, done // every + 1, seen, counts, end)
     passed = stop.signs * (stop.rows @ end.velocity)
     stopped = bool(np.any((stop.signs != 0.0) & (passed <= 0.0)))
     return Piece(motion, before, stopped, kept.gripped[: len(motion.times)])
 
 
-def _records(stepper: Stepper, seen: Floats, k: int) -> Kept:
+def _records(stepper: Stepper, n: int, k: int) -> Kept:
     """Memory for k records."""
     springs, turns = stepper.mechanism.equations.springs.rows, stepper.turning is not None
-    rows = seen if turns else np.vstack([seen, springs])
     return Kept(
-        np.ascontiguousarray(rows)[None],
         np.empty(k),
-        np.empty((k, len(rows))),
-        np.empty((k, len(rows))),
+        np.empty((k, n)),
+        np.empty((k, n)),
         np.empty((k, stepper.model.laws.values.shape[1])),
         np.empty((k, len(springs) if turns else 0)),
         np.empty((2, k, 5 * len(stepper.rolling.seconds))),
@@ -345,16 +352,14 @@ def _records(stepper: Stepper, seen: Floats, k: int) -> Kept:
     )
 
 
-def _motion(stepper: Stepper, kept: Kept, k: int, w: int, counts: Ints, end: State) -> Motion:
-    """The history of k records of w rows."""
+def _motion(
+    stepper: Stepper, kept: Kept, k: int, seen: Floats | None, counts: Ints, end: State
+) -> Motion:
+    """The history of k records of all degrees of freedom, or of rows (w, n)."""
     mechanism = stepper.mechanism
     s, law = mechanism.equations.springs, mechanism.equations.springs.special
-    if mechanism.carriers is None:
-        forces = np.empty((k, len(s.rows)))
-        stretch, rate = kept.places[:k, w:] - s.offset, kept.rates[:k, w:]
-        forces[:, ~law] = (stretch * s.stiffness + rate * s.damping)[:, ~law]
-    else:
-        forces = kept.along[:k]
+    q, velocity = kept.places[:k], kept.rates[:k]
+    forces = kept.along[:k] if mechanism.carriers else stepper.springs.of(q, velocity)
     forces[:, law] = kept.forces[:k]
     energies = kept.energies[:k]
     # the constant of a spring's energy that its offset leaves
@@ -369,8 +374,8 @@ def _motion(stepper: Stepper, kept: Kept, k: int, w: int, counts: Ints, end: Sta
         azimuth = mechanism.carriers.speed * kept.times[:k]
     return Motion(
         kept.times[:k],
-        kept.places[:k, :w],
-        kept.rates[:k, :w],
+        q if seen is None else q @ seen.T,
+        velocity if seen is None else velocity @ seen.T,
         forces,
         energies,
         int(counts[0]),

@@ -14,6 +14,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.compiled import inner_loop, njit, places
+from fe_drivetrain.dynamics.time.sparse_steps import Sparse
 
 MASS, DAMPING, STIFFNESS, INVERSE, DRIFT = places(5)
 """Square matrices: of the equations, the inverse of A, and what dampers have of displacements where
@@ -25,7 +26,8 @@ class Matrices(NamedTuple):
 
     ``coefficients``: those of `Scheme.coefficients`; ``squares`` (5, n, n); ``constant`` (n,)
     forces of offsets; ``rows`` (2, r, n): R and (A^-1 R^T)^T; ``compliance`` (r, r) R A^-1 R^T;
-    ``held`` (2, h, n): motions that stay, at right angles, and accelerations along them by forces.
+    ``held`` (2, h, n): motions that stay, at right angles, and accelerations along them by forces;
+    ``sparse``: the same squares by their entries, where these are few and stay.
     """
 
     dt: float
@@ -35,6 +37,7 @@ class Matrices(NamedTuple):
     rows: Floats
     compliance: Floats
     held: Floats
+    sparse: Sparse
 
 
 class Turning(NamedTuple):
