@@ -35,6 +35,7 @@ TORQUE_ALONE = (
     "it, in all of them."
 )
 _ROUND_OFF = 1e-6
+_QUICK = 1.5  # K_v beyond which the load of the teeth is no longer that of the torque
 
 
 def gear_chart(
@@ -339,6 +340,14 @@ def _cautions(
         )
     if result["level"] != "torsional":
         found.note("Flanks have no modification along the face: lead corrections are not modelled.")
+        quick = {name: one.factors.K_v for name, one in meshes.items() if one.factors.K_v > _QUICK}
+        if quick:
+            worst = max(quick, key=lambda name: quick[name])
+            found.note(
+                f"K_v of {worst} is {quick[worst]:.3g}, of so little torque at this speed. Statics "
+                "spread the torque without it, so that K_Hbeta of a fixed misalignment, as by the "
+                "rotor's weight, is too large then: safety may seem to fall with the torque."
+            )
     found.note(housings_in_words(train.rung, train.machine))
     assume_housings(found, train.rung.assumes)
     if result["varies"] and (result["spectrum"].torques < 0.0).any():

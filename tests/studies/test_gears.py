@@ -517,3 +517,12 @@ def test_the_stiffest_that_a_file_may_state_is_as_good_as_rigid(key: str) -> Non
         loads = MeshResponses(machine, Level.FLEXIBLE, 1, 3).under(4e6)
         sums.append([one.sum() for one in loads.slices.values()])
     np.testing.assert_allclose(sums[1], sums[0], rtol=3e-8)
+
+
+@pytest.mark.parametrize(("share", "said"), [(1.0, False), (0.03, True)])
+def test_a_large_dynamic_factor_is_named_beside_statics(share: float, said: bool) -> None:
+    drivetrain = read_drivetrain("nrel_5mw", BY_FORMULA)
+    options = GearOptions(level="rigid", azimuths=4, slices=3)
+    found = gears(drivetrain, share * 4.18e6, options=options)
+    assert (found.meshes["stage 3 mesh"].factors.K_v > 1.5) == said
+    assert any("K_v of stage 3 mesh is" in note for note in found.notes) == said

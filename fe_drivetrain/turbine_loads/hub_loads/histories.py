@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.components import FORCES, LARGEST_LOAD
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.comparison.statistics import CONSTANT
@@ -26,7 +26,7 @@ from fe_drivetrain.turbine_loads.hub_loads.sampling import STEP_TOLERANCE, Sampl
 
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
-MAX_LOAD = 1e12
+MAX_LOAD = LARGEST_LOAD
 """A hub load beyond this (N, N m) is a typing or unit error."""
 
 MIN_SAMPLES = 3
