@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy import sparse
@@ -145,7 +146,7 @@ def preconditioner(problem: Problem, name: str) -> Callable[[Floats], Floats]:
     """What conjugate gradients are preconditioned with."""
     if name == MULTIGRID:
         return multigrid.build(problem.system, problem.options).precondition
-    inverse = np.linalg.inv(diagonal_blocks(problem.system.K))
+    inverse: Floats = np.linalg.inv(diagonal_blocks(problem.system.K)).astype(np.float64)
 
     def apply(R: Floats) -> Floats:
         out = np.empty_like(R)
@@ -161,11 +162,8 @@ def solved(problem: Problem, names: Sequence[str], repeats: int) -> list[Record]
     K, load = problem.system.K, problem.load[:, None]
     for name in names:
         by = preconditioner(problem, name)
-        plain, before = timed_runs(lambda by=by: iterated(K, load, by, TOLERANCE, MOST), repeats)
-        other, after = timed_runs(
-            lambda by=by: iterated(K, load, deflated(K, by, problem.motions), TOLERANCE, MOST),
-            repeats,
-        )
+        plain, before = timed_runs(partial(iterated, K, load, by, TOLERANCE, MOST), repeats)
+        other, after = timed_runs(partial(with_deflation, problem, by), repeats)
         made = deflated(K, by, problem.motions)
         kept = np.abs(made(made.forces) - problem.motions).max() / np.abs(problem.motions).max()
         compliance = [float(problem.load @ found.x[:, 0]) for found in (plain, other)]
@@ -191,9 +189,16 @@ def solved(problem: Problem, names: Sequence[str], repeats: int) -> list[Record]
     return rows
 
 
+def with_deflation(problem: Problem, by: Callable[[Floats], Floats]) -> multigrid.Iteration:
+    """Prepare deflation, and iterate with it."""
+    K = problem.system.K
+    made = deflated(K, by, problem.motions)
+    return iterated(K, problem.load[:, None], made, TOLERANCE, MOST)
+
+
 def arrived(row: Record) -> bool:
     """Whether both ways came to the tolerance."""
-    return max(row["error without"], row["error with"]) <= TOLERANCE
+    return bool(max(row["error without"], row["error with"]) <= TOLERANCE)
 
 
 def traces(rows: list[Record]) -> list[Record]:

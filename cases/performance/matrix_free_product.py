@@ -9,6 +9,7 @@ Jacobians: one of a straight element, one a point of a curved one.
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numba import get_num_threads, njit
@@ -67,11 +68,18 @@ class MatrixFree:
         out = np.zeros_like(x)
         with ThreadPoolExecutor(get_num_threads()) as pool:
             for some in self.packed:
-                fixed = some.nodes, some.geometry, some.gradients, x, out
                 for ends in some.rounds:
                     rooms = np.empty((len(ends) - 1, (2 * 30 + 9) * LANES))
                     parts = zip(ends[:-1].tolist(), ends[1:].tolist(), rooms, strict=True)
-                    for part in [pool.submit(_add_product, *part, *fixed) for part in parts]:
+                    add = partial(
+                        _add_product,
+                        nodes=some.nodes,
+                        geometry=some.geometry,
+                        gradients=some.gradients,
+                        x=x,
+                        out=out,
+                    )
+                    for part in [pool.submit(add, *part) for part in parts]:
                         part.result()
         return out
 

@@ -60,4 +60,6 @@ def test_every_phase_has_a_floor_in_proportion_to_what_it_moves(quick_run: Quick
     steps = [row for phase, row in rows.items() if phase.startswith("set-up:")]
     for what in ("bytes [MB]", "floor [s]"):
         assert sum(row[what] for row in steps) == pytest.approx(rows["set-up"][what])
+    for phase in ("pattern", "elements"):
+        assert rows[phase]["every access [MB]"] > rows[phase]["bytes [MB]"]
     assert beside["no matrix [MB]"] < 0.5 * beside["matrix [MB]"]

@@ -25,6 +25,7 @@ from fe_drivetrain.elasticity.operator.vectors import (
     plus_product,
     store,
     times,
+    transposed,
 )
 
 # Rows that a thread takes at once have a marker for each node.
@@ -58,11 +59,12 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
     pieces = np.linspace(0, n // 3, _PIECES + 1).astype(np.int64)
     indptr, most = np.zeros(n // 3 + 1, dtype=np.int32), np.zeros(_PIECES, dtype=np.int64)
     # NumPy makes the arrays out here: in a compiled loop that takes longer to compile
-    markers = _Markers(*(np.full((_PIECES, m), -1, np.int32) for m in (n_fine, n // 3)), last)
+    met, seen = (np.full((_PIECES, m), -1, np.int32) for m in (n_fine, n // 3))
+    markers = _Markers(met, seen, last)
     patterns = back.pattern, _Pattern(K.indptr, K.indices), forwards.pattern
     in_pieces(_PIECES, _count, *patterns, pieces, markers, indptr[1:], most)
     np.cumsum(indptr, out=indptr)
-    markers.fine[:], markers.coarse[:] = -1, -1
+    met[:], seen[:] = -1, -1
     indices, data = np.empty(indptr[-1], dtype=np.int32), np.zeros((indptr[-1], 3, 3))
     row = _Row(
         np.empty((_PIECES, most.max()), np.int32), np.empty((_PIECES, most.max() * _ROOM + LANES))
@@ -72,10 +74,7 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
         *(back, _Rows(K.indptr, K.indices, K.data.ravel()), forwards),
         *(pieces, markers, row, _Rows(indptr, indices, data.ravel())),
     )
-    data[indices == np.repeat(np.arange(n // 3), np.diff(indptr))] *= 0.5
-    # turned twice, rows are sorted
-    left = sparse.bsr_array((data, indices, indptr), shape=(n, n)).T
-    return left + left.T
+    return _mirrored(_Rows(indptr, indices, data))
 
 
 class _Pattern(NamedTuple):
@@ -128,6 +127,23 @@ def _transfer(P: sparse.bsr_array) -> _Transfer:
     for place in (0, 1, 2, 4, 5, 6):
         plain &= others[place] == 0.0
     return _Transfer(*pattern_of(P), P.data.ravel(), np.where(plain, first, np.nan))
+
+
+def _mirrored(right: "_Rows") -> sparse.bsr_array:
+    """The symmetric matrix of which these are the blocks from the diagonal on; sorted."""
+    indptr, indices, data = right
+    n = len(indptr) - 1
+    row = np.repeat(np.arange(n), np.diff(indptr))
+    diagonal = indices == row
+    data[diagonal] = 0.5 * (data[diagonal] + data[diagonal].swapaxes(1, 2))
+    whole = np.zeros(n + 1, dtype=np.int32)
+    np.cumsum(np.diff(indptr) + np.bincount(indices[~diagonal], minlength=n), out=whole[1:])
+    columns, source = np.empty((2, whole[-1]), dtype=np.int32)
+    _place(indptr, indices, whole, whole[:-1].copy(), columns, source)
+    blocks = np.empty((whole[-1], 3, 3))
+    pieces = np.linspace(0, n, _PIECES + 1).astype(np.int64)
+    in_pieces(_PIECES, _mirror, pieces, whole, columns, source, data.ravel(), blocks.ravel())
+    return sparse.bsr_array((blocks, columns, whole), shape=(3 * n, 3 * n))
 
 
 @njit(cache=True, nogil=True)
@@ -243,3 +259,49 @@ def _add_product(
     store(found, data, t)
     for i in (np.uint64(2), np.uint64(1), np.uint64(0)):
         data[t + last] += one[s + last - i] * other[p + last - np.uint64(3) * i]
+
+
+@njit(cache=True)
+def _place(
+    indptr: Index, indices: Index, whole: Index, end: Index, columns: Index, source: Index
+) -> None:
+    """Columns of whole rows, and where the block of each is, from what is right of the diagonal.
+
+    Left of it and on it row by row, then from these what is right of it: so rows are sorted.
+    """
+    n = len(indptr) - 1
+    for a in range(n):
+        for t in range(indptr[a], indptr[a + 1]):
+            p = end[indices[t]]
+            columns[p], source[p] = a, t
+            end[indices[t]] += 1
+    for b in range(n):
+        for p in range(whole[b], end[b]):
+            a = columns[p]
+            if a >= b:
+                break
+            columns[end[a]], source[end[a]] = b, source[p]
+            end[a] += 1
+
+
+@njit(cache=True, nogil=True)
+def _mirror(
+    piece: int,
+    pieces: NDArray[np.int64],
+    whole: Index,
+    columns: Index,
+    source: Index,
+    data: Floats,
+    blocks: Floats,
+) -> None:
+    """Put each block, or its transpose left of the diagonal, into its place."""
+    last = np.uint64(LANES)
+    for a in range(pieces[piece], pieces[piece + 1]):
+        for p in range(whole[a], whole[a + 1]):
+            t, to = np.uint64(9 * np.int64(source[p])), np.uint64(9 * np.int64(p))
+            block = load(data, t)
+            if columns[p] < a:
+                store(transposed(block), blocks, to)
+            else:
+                store(block, blocks, to)
+            blocks[to + last] = data[t + last]
