@@ -47,7 +47,9 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
     check_events(found, events)
     files = recorded_files(asked.loads)
     series = SeriesFiles(files)
-    with show_steps() as report, scheduled_by(asked.scheduler):
+    from fe_drivetrain.elasticity.compiled_ahead import compiled_ahead
+
+    with show_steps() as report, scheduled_by(asked.scheduler), compiled_ahead("bearing"):
         # before the run: a mistake leaves no trace in a folder of reports
         report("bearings")
         drivetrain = DrivetrainBearings(found, options)

@@ -144,7 +144,7 @@ def report_command(context: typer.Context, asked: ReportRequest) -> int:
     from fe_drivetrain.elasticity.compiled_ahead import compiled_ahead
 
     with show_steps() as report:
-        with compiled_ahead("solver", "meridian"):
+        with compiled_ahead("solver", "meridian", "bearing"):
             results = _dossier(folder, asked, scene, own, report)
         if needs_browser:
             _print(needs_browser, folder, asked, results, report)

@@ -22,12 +22,14 @@ from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.threads import cores, thread_limits
 from fe_drivetrain.common.worker import Worker
 
-Loops = Literal["solver", "meridian"]
-"""Loops of the multigrid solver of solids; of a shaft's elimination in its meridian."""
+Loops = Literal["solver", "meridian", "bearing"]
+"""Loops of the multigrid solver of solids; of a shaft's elimination in its meridian; of the
+equilibrium of rolling bearings."""
 
 _LAST = {
     "solver": "operator/kernels.py:_add_product_of_one",
     "meridian": "revolution/frontal.py:_solve",
+    "bearing": "../bearing/kernels.py:elements_of",
 }
 """Module and function of the loop that `rehearse` compiles last."""
 
@@ -93,7 +95,7 @@ def rehearse(loops: Loops) -> None:
     loops : str
         Which of `Loops`.
     """
-    {"solver": _solver, "meridian": _meridian}[loops]()
+    {"solver": _solver, "meridian": _meridian, "bearing": _bearing}[loops]()
 
 
 def _solver() -> None:
@@ -129,3 +131,16 @@ def _meridian() -> None:
     one, first = np.ones((1, 1)), np.zeros((1, 1), dtype=np.int64)
     law = np.ones((1, 1, 1, 1))
     factored(np.ones((1, 1, 1)), law, first, one, np.zeros(1, dtype=np.int64)).solve(one)
+
+
+def _bearing() -> None:
+    """Loops of `fe_drivetrain.bearing`, of one load on one bearing."""
+    from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
+    from fe_drivetrain.bearing.contact_forces import forces, roller_loads
+    from fe_drivetrain.bearing.rolling import equilibrium
+
+    entry = next(one for one in read_bearing_catalogue().values() if one.kind == "spherical_roller")
+    bearing = entry.bearing("bearing")
+    found = equilibrium(bearing, [0.0, 0.0, 1e4, 0.0, 0.0])
+    forces(bearing, found.displacements)
+    roller_loads(bearing, found.displacements)

@@ -4,10 +4,17 @@ import os
 import subprocess
 import sys
 import time
+from importlib import import_module
+from pathlib import Path
 
 import pytest
+from numba.core.dispatcher import Dispatcher
 
+import fe_drivetrain
 from fe_drivetrain.common.compiled import njit
+
+#: What a loop that does not state it takes from whichever other one has it compiled first.
+PASSED_ON = ("fastmath", "error_model")
 
 LOOP = """
 import sys, time
@@ -95,3 +102,47 @@ def test_a_loop_that_cannot_be_compiled_says_so_and_another_form_is_compiled():
     with pytest.raises(Exception, match=r"(?i)typing|unknown attribute"):
         doubled("word")
     assert doubled(1.5) == 3.0
+
+
+def called(loop):
+    """Loops that a loop names."""
+    scope = loop.py_func.__globals__
+    named = (scope.get(name) for name in loop.py_func.__code__.co_names)
+    return [one for one in named if isinstance(one, Dispatcher)]
+
+
+def not_stated(loops):
+    """What loops would pass on to those that they call, which do not state it."""
+    return {
+        (loop.py_func.__name__, one.py_func.__name__, option)
+        for loop in loops
+        for one in called(loop)
+        for option in PASSED_ON
+        if loop.targetoptions.get(option) and option not in one.targetoptions
+        if one.targetoptions.get("inline") != "always"
+    }
+
+
+@njit(fastmath=True)
+def quick(x):
+    return silent(x)
+
+
+@njit()
+def silent(x):
+    return 2.0 * x
+
+
+def test_results_do_not_depend_on_which_loop_is_compiled_first():
+    package = Path(fe_drivetrain.__file__).parent
+    files = [f for f in package.rglob("*.py") if "import njit" in f.read_text("utf-8")]
+    names = [".".join(f.relative_to(package).with_suffix("").parts) for f in files]
+    loops = {
+        id(one): one
+        for name in names
+        for one in vars(import_module(f"fe_drivetrain.{name}")).values()
+        if isinstance(one, Dispatcher)
+    }
+    assert len(loops) > 100
+    assert not_stated(loops.values()) == set()
+    assert not_stated([quick]) == {("quick", "silent", "fastmath")}

@@ -11,6 +11,7 @@ from fe_drivetrain.elasticity.compiled_ahead import is_compiled
 #: Rehearse, do real work, and print the loops of a module that this has compiled or loaded beside.
 PROGRAM = """
 import sys
+from importlib import import_module
 from numba.core.dispatcher import Dispatcher
 from fe_drivetrain.drivetrain_file.reading import library_scene
 from fe_drivetrain.elasticity.compiled_ahead import rehearse
@@ -29,11 +30,20 @@ def solver(scene):
     from fe_drivetrain.shafts.response.unit_loads import unit_load_response
     unit_load_response(build_model(scene, mesh_scene(scene)), "multigrid")
 
-work = {"meridian": meridian, "solver": solver}[sys.argv[1]]
-if sys.argv[1] == "meridian":
-    from fe_drivetrain.elasticity.revolution import frontal as module
-else:
-    from fe_drivetrain.elasticity.operator import kernels as module
+def bearing(scene):
+    from fe_drivetrain.bearing.catalogue import read_bearing_catalogue
+    from fe_drivetrain.bearing.rolling import equilibrium
+    for kind in ("double_row_tapered", "spherical_roller", "cylindrical"):
+        entry = next(one for one in read_bearing_catalogue().values() if one.kind == kind)
+        found = equilibrium(entry.bearing("b"), [[0, 2e4, 1e4, 0, 0], [0, 0, 2e4, 0, 0]])
+        found.unbalanced, found.rollers
+
+work, module = {
+    "meridian": (meridian, "elasticity.revolution.frontal"),
+    "solver": (solver, "elasticity.operator.kernels"),
+    "bearing": (bearing, "bearing.newton"),
+}[sys.argv[1]]
+module = import_module(f"fe_drivetrain.{module}")
 rehearse(sys.argv[1])
 before = forms(module)
 assert before
@@ -42,14 +52,14 @@ print(sorted({name for name, form in forms(module) - before}))
 """
 
 
-@pytest.mark.parametrize("loops", ["meridian", "solver"])
+@pytest.mark.parametrize("loops", ["meridian", "solver", "bearing"])
 def test_real_work_finds_every_loop_compiled(loops):
     done = run_python("-c", PROGRAM, loops)
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize("loops", ["meridian", "solver"])
+@pytest.mark.parametrize("loops", ["meridian", "solver", "bearing"])
 def test_whether_loops_are_compiled_is_seen_by_the_last_of_them(loops, tmp_path, monkeypatch):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     assert not is_compiled(loops)

@@ -49,7 +49,8 @@ _COLUMNS = 16
 keep_freed_memory()
 
 
-@njit(cache=True, error_model="numpy")
+# stated: what is not, a loop takes from whichever other one has it compiled first
+@njit(cache=True, error_model="numpy", fastmath=True)
 def inverse_transposed(J: Floats, A: Floats) -> float:
     """Put J^-T into A, of no numbers where there is none; the determinant of J."""
     for i in range(3):
