@@ -290,12 +290,7 @@ def sample(
     InputError
         Nothing is uncertain, or a sample is no scene.
     """
-    check_spreads(scene)
-    keys = tuple(spreads_of(scene))
-    from scipy.stats import qmc
-
-    quantiles = qmc.LatinHypercube(d=len(keys), rng=seed).random(count)
-    inputs = np.column_stack([d.ppf(q) for d, q in zip(_spreads(scene), quantiles.T, strict=True)])
+    keys, inputs = latin_hypercube(scene, count, seed)
     values = evaluated_rows(
         inputs,
         lambda row: _evaluated(scene, evaluate, keys, row),
@@ -306,6 +301,30 @@ def sample(
         name: Samples(keys, inputs, values[name], nominal)
         for name, nominal in evaluate(scene).items()
     }
+
+
+def latin_hypercube(scene: Drivetrain, count: int, seed: int = 0) -> tuple[tuple[str, ...], Floats]:
+    """Keys of the d uncertain values of a scene, and (count, d) samples of them.
+
+    Parameters
+    ----------
+    scene : Drivetrain
+        What is varied.
+    count, seed : int
+        Number of samples, and seed of the hypercube.
+
+    Raises
+    ------
+    InputError
+        Nothing is uncertain.
+    """
+    check_spreads(scene)
+    keys = tuple(spreads_of(scene))
+    from scipy.stats import qmc
+
+    quantiles = qmc.LatinHypercube(d=len(keys), rng=seed).random(count)
+    spreads = zip(_spreads(scene), quantiles.T, strict=True)
+    return keys, np.column_stack([d.ppf(q) for d, q in spreads])
 
 
 def sobol_shares(
