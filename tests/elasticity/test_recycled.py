@@ -6,10 +6,13 @@ import pytest
 from fe_drivetrain.drivetrain_file.materials import MATERIALS
 from fe_drivetrain.elasticity.interfaces.constraints import eliminate, fixed
 from fe_drivetrain.elasticity.mesh.blocks import brick
-from fe_drivetrain.elasticity.operator.elasticity import assemble
+from fe_drivetrain.elasticity.mesh.generation import generate
+from fe_drivetrain.elasticity.operator.carried_fields import change_by_shift
+from fe_drivetrain.elasticity.operator.elasticity import assemble, sparsity
 from fe_drivetrain.elasticity.solve import direct_solvers, multigrid
 from fe_drivetrain.elasticity.solve.recycled import Recycled
 from fe_drivetrain.elasticity.solve.reduction import reduce
+from fe_drivetrain.geometry import MeshSizes, Section, Shaft
 
 TOLERANCE = 1e-9
 
@@ -112,3 +115,15 @@ def test_a_space_of_other_unknowns_is_left(neighbours):
     assert space.size == 1
     assert space.start(system.K, F) is None
     assert space.size == 0
+
+
+def test_a_linear_field_is_carried_exactly(rng):
+    section = Section(length=1.0, outer_diameter=0.4, inner_diameter=0.1)
+    mesh = generate(Shaft(sections=[section], front=0.0), sizes=MeshSizes(shaft=0.3))
+    shift = 0.01 * rng.standard_normal(mesh.points.shape)
+    gradient, first = rng.standard_normal((3, 3)), rng.standard_normal(3)
+    pattern = sparsity(mesh.cells, len(mesh.points) + 2)  # with a reference point's unknowns
+    u = np.append((mesh.points @ gradient + first).ravel(), np.ones(6))[:, None]
+    found = u + change_by_shift(mesh.points, mesh.cells, pattern, shift) @ u
+    expected = np.append(((mesh.points + shift) @ gradient + first).ravel(), np.ones(6))
+    np.testing.assert_allclose(found[:, 0], expected, rtol=1e-10)

@@ -12,7 +12,7 @@ from fe_drivetrain.drivetrain_file.reading import change_scene
 from fe_drivetrain.shafts.response.model import LOADS, build_model
 from fe_drivetrain.shafts.response.neighbours import NOTHING, Neighbours, Reuse
 from fe_drivetrain.shafts.response.unit_loads import some_responses, unit_load_response
-from fe_drivetrain.shafts.uncertainty.assembly_samples import ERROR, assembly_of
+from fe_drivetrain.shafts.uncertainty.assembly_samples import SAMPLED_ERROR, assembly_of
 from fe_drivetrain.shafts.uncertainty.input_study import study
 from fe_drivetrain.shafts.uncertainty.sampling import with_values
 
@@ -152,7 +152,7 @@ def test_samples_of_an_assembly(scene):
         some.evaluate(scene)
     one, other = exact.sampled(changed), alone.evaluate(changed)
     for name, value in one.items():
-        assert value == pytest.approx(other[name], rel=10 * ERROR)
+        assert value == pytest.approx(other[name], rel=10 * SAMPLED_ERROR)
     assert found.errors["hub.stiffness.uz"].share > 0.0
     # a shaft of steel in steel: what is left of the elasticities is iron's and the springs'
     assert 0.0 < found.slopes["hub.stiffness.ux"][STEEL] < 1.0

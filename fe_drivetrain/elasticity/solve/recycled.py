@@ -8,6 +8,7 @@ tolerance of the iteration stays what it was, so that the answer does not depend
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +28,10 @@ ROOM = 2**27
 KNOWN = 1e-8
 
 _DEPENDENT = 1e-12  # of the largest eigenvalue: vectors that say nothing new
+
+
+def _as_it_is(X: Floats) -> Floats:
+    return X
 
 
 @dataclass(frozen=True)
@@ -84,7 +89,9 @@ class Recycled:
         held = (self._basis, self._work)
         return sum(array.nbytes for array in held if array is not None)
 
-    def start(self, K: sparse.bsr_array, F: Floats) -> Start | None:
+    def start(
+        self, K: sparse.bsr_array, F: Floats, carried: Callable[[Floats], Floats] = _as_it_is
+    ) -> Start | None:
         """Galerkin solutions in the space; None where it is empty.
 
         Parameters
@@ -93,11 +100,13 @@ class Recycled:
             Stiffness (n, n), symmetric positive definite.
         F : Floats
             Right-hand sides (n, m).
+        carried : callable
+            Carries vectors (n, k) that are kept to this system, where its nodes have other places.
         """
-        V = self._basis
-        if V is None or V.shape[0] != K.shape[0]:
+        if self._basis is None or self._basis.shape[0] != K.shape[0]:
             self._basis = None
             return None
+        V = carried(self._basis)
         G = self._gram(K, V)
         values, vectors = linalg.eigh(0.5 * (G + G.T))
         some = values > _DEPENDENT * values[-1]
@@ -118,7 +127,13 @@ class Recycled:
         kernels.residual(*kernels.pattern_of(K), K.data, V, zero, product)
         return -(V.T @ product)
 
-    def learn(self, K: sparse.bsr_array, x: Floats, start: Start | None) -> float:
+    def learn(
+        self,
+        K: sparse.bsr_array,
+        x: Floats,
+        start: Start | None,
+        carried: Callable[[Floats], Floats] = _as_it_is,
+    ) -> float:
         """Take up what solutions have that the space did not.
 
         Parameters
@@ -129,6 +144,8 @@ class Recycled:
             Solutions (n, m).
         start : Start or None
             Where the iteration to them started.
+        carried : callable
+            Carries vectors (n, k) of this system to where they are kept.
 
         Returns
         -------
@@ -148,7 +165,7 @@ class Recycled:
         values, vectors = linalg.eigh(G[np.ix_(some, some)] / np.outer(size, size))
         apart = values > KNOWN * values[-1]
         ways = vectors[:, apart] / np.sqrt(values[apart]) / size[:, None]
-        added = new[:, some] @ ways
+        added = np.ascontiguousarray(carried(new[:, some] @ ways))
         if self._basis is None:
             self._basis, self._taken = added, np.ones(added.shape[1])
             return missing

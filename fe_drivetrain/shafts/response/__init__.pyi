@@ -22,6 +22,10 @@ from .model import joint_pairs as joint_pairs
 from .model import mesh_scene as mesh_scene
 from .model import needed_faces as needed_faces
 from .model import scene_loads as scene_loads
+from .neighbours import GROWTH as GROWTH
+from .neighbours import NOTHING as NOTHING
+from .neighbours import Neighbours as Neighbours
+from .neighbours import Reuse as Reuse
 from .stated import Stated as Stated
 from .stated import stated_reactions as stated_reactions
 from .unit_loads import Response as Response

@@ -14,13 +14,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fe_drivetrain.common.arrays import Bools, Floats
+from fe_drivetrain.common.arrays import Bools, Floats, Ints
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.elasticity.interfaces.constraints import eliminate
+from fe_drivetrain.elasticity.interfaces.constraints import Constraint, Elimination, eliminate
 from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.elasticity.mesh.moving import LEAST_SHAPE, MOST_STRETCH, MovableMesh
 from fe_drivetrain.elasticity.mesh.surface_shifts import Parts
+from fe_drivetrain.elasticity.operator import kernels
+from fe_drivetrain.elasticity.operator.carried_fields import change_by_shift
 from fe_drivetrain.elasticity.operator.elasticity import Pattern, sparsity
 from fe_drivetrain.elasticity.solve import multigrid
 from fe_drivetrain.elasticity.solve.element_system import ElementSystem
@@ -33,7 +35,7 @@ from fe_drivetrain.shafts.response.model import Model, build_model, mesh_scene
 from fe_drivetrain.shafts.response.prepared import STOP_AT, Prepared, prepare_by
 from fe_drivetrain.shafts.response.unit_loads import Response
 
-GROWTH = 1.5
+GROWTH = 1.2
 """Iterations for each decade of the error, over those of a factor or hierarchy of the design
 itself, at which a neighbour's is given up."""
 
@@ -41,6 +43,7 @@ FAMILIES = 3
 """Meshes that are kept to be moved; a fourth takes the place of the oldest but the first."""
 
 _JUDGED_FROM = 2.0  # decades: fewer say little about how fast an iteration converges
+_OF_A_POINT = 6  # rows of a constraint that holds the motions of one point
 _PACE_OF_FACTOR = 1.0  # iterations a decade that a factor of another design is kept for
 
 
@@ -107,10 +110,11 @@ class _Family:
     movable: MovableMesh
     space: Recycled | None
     solver: Solver | None = None
-    free: Bools | None = None
     pace: float = math.inf
     """Iterations for each decade with a factor or hierarchy of the design itself."""
     worn: bool = False
+    free: Bools | None = None
+    pivots: dict[str, Ints] = field(default_factory=dict)
     checked: bool = False
     pattern: Pattern | None = None
 
@@ -196,6 +200,32 @@ class Neighbours:
 
 
 @dataclass(frozen=True, eq=False)
+class _Between:
+    """Carries displacements between a family's first mesh and one that was moved from it."""
+
+    points: Floats
+    mesh: Mesh
+    pattern: Pattern
+    elimination: Elimination
+
+    def there(self, U: Floats) -> Floats:
+        """Free displacements of the moved mesh, of all of the first one's."""
+        found = self._shifted(U, self.points, self.mesh.points - self.points)
+        return np.ascontiguousarray(found * self.elimination.free[:, None])
+
+    def back(self, q: Floats) -> Floats:
+        """Displacements of the first mesh, of free ones of the moved one."""
+        U = np.asarray(self.elimination.T @ q)
+        return self._shifted(U, self.mesh.points, self.points - self.mesh.points)
+
+    def _shifted(self, U: Floats, points: Floats, shift: Floats) -> Floats:
+        if not shift.any():
+            return U
+        A = change_by_shift(points, self.mesh.cells, self.pattern, shift)
+        return np.asarray(U + kernels.product(A, U))
+
+
+@dataclass(frozen=True, eq=False)
 class _Preparation:
     """Makes a model of a family ready for right-hand sides."""
 
@@ -208,8 +238,10 @@ class _Preparation:
         if family.pattern is None:
             family.pattern = sparsity(model.mesh.cells, model.n_dofs // 3)
         stiffness = model.assembled(family.pattern)
-        elimination = eliminate(model.constraints, model.n_dofs)
-        same = family.free is not None and np.array_equal(family.free, elimination.free)
+        elimination = eliminate(self._with_pivots(model), model.n_dofs)
+        free = family.free
+        same = free is not None and np.array_equal(free, elimination.free)
+        between = _Between(family.movable.mesh.points, model.mesh, family.pattern, elimination)
         worn = family.worn or self.neighbours.reuse.growth == 0.0
 
         def whole() -> System:
@@ -217,21 +249,32 @@ class _Preparation:
             return reduce(mesh.points, mesh.cells, stiffness, elimination, model.springs)
 
         if kept is None or worn or not same or method not in ("auto", kept.method):
-            kept = self._set_up(whole(), method, n_rhs, elimination.free)
-            solver = self._going_on(kept, kept.system, None)
+            family.free = elimination.free
+            kept = self._set_up(whole(), method, n_rhs)
+            solver = self._going_on(kept, kept.system, between, None)
         else:
             K = reduced_stiffness(stiffness, elimination)
             n_free = int(elimination.free.sum())
             none = np.zeros((0, 6)), np.zeros(0, dtype=np.int64)
-            solver = self._going_on(kept, System(K, None, *none, n_free), whole)
+            solver = self._going_on(kept, System(K, None, *none, n_free), between, whole)
         return Prepared(stiffness, elimination, solver)
 
-    def _set_up(self, system: System, method: str, n_rhs: int, free: Bools) -> Solver:
+    def _with_pivots(self, model: Model) -> list[Constraint]:
+        """Constraints of a model, those of points solved for the same unknowns as at first.
+
+        Of weights that are equal but for round-off, each mesh would choose others, and what is
+        eliminated decides on a hierarchy.
+        """
+        known = self.family.pivots
+        for constraint in model.constraints:
+            if len(constraint.pivots) <= _OF_A_POINT:
+                known.setdefault(constraint.name, constraint.pivots)
+        return [replace(c, pivots=known.get(c.name, c.pivots)) for c in model.constraints]
+
+    def _set_up(self, system: System, method: str, n_rhs: int) -> Solver:
         """A solver of the design's own, kept for those that follow."""
         family = self.family
-        if family.free is not None and not np.array_equal(family.free, free) and family.space:
-            family.space = Recycled(family.space.most, family.space.known)  # other unknowns
-        family.solver, family.free = factorise(system, method, n_rhs, self.tolerance), free
+        family.solver = factorise(system, method, n_rhs, self.tolerance)
         family.pace = math.inf if family.solver.method in ITERATIVE else _PACE_OF_FACTOR
         family.worn = False
         self.neighbours.note(set_up=True)
@@ -241,6 +284,7 @@ class _Preparation:
         self,
         kept: Solver,
         system: System | ElementSystem,
+        between: _Between,
         whole: Callable[[], System] | None,
     ) -> Solver:
         """A solver of a system by what is kept; `whole` makes it one for another set-up."""
@@ -249,7 +293,7 @@ class _Preparation:
             return kept
 
         def iterate(F: Floats) -> multigrid.Iteration:
-            return self._iterated(system, kept, whole, F)
+            return self._iterated(system, kept, between, whole, F)
 
         own = whole is None
         reason = kept.reason if own else f"{kept.method} of a neighbour"
@@ -258,12 +302,17 @@ class _Preparation:
         return Solver(system, kept.method, reason, self.tolerance, seconds, held, iterate, by)
 
     def _iterated(
-        self, system: System, kept: Solver, whole: Callable[[], System] | None, F: Floats
+        self,
+        system: System,
+        kept: Solver,
+        between: _Between,
+        whole: Callable[[], System] | None,
+        F: Floats,
     ) -> multigrid.Iteration:
         """Solve from what the space has, and keep what it had not."""
-        K, family, space = system.K, self.family, self.family.space
+        K, space = system.K, self.family.space
         assert kept.precondition is not None
-        begin = None if space is None else space.start(K, F)
+        begin = None if space is None else space.start(K, F, between.there)
         if whole is None and begin is None:
             found = kept.iterate(F)
         else:
@@ -271,13 +320,12 @@ class _Preparation:
                 K, F, kept.precondition, self.tolerance, start=begin
             )
         if whole is not None and found.energy_error > self.tolerance:
-            assert family.free is not None
             tried = found.iterations
-            found = self._set_up(whole(), kept.method, F.shape[1], family.free).iterate(F)
+            found = self._set_up(whole(), kept.method, F.shape[1]).iterate(F)
             found = replace(found, iterations=tried + found.iterations)
         missing = 1.0
         if space is not None:
-            missing = space.learn(K, found.x, begin)
+            missing = space.learn(K, found.x, begin, between.back)
             space.least_ratio = max(space.least_ratio, found.tail_ratio)
         self._judge(found, missing, whole is None)
         return found

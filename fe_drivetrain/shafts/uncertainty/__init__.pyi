@@ -1,9 +1,13 @@
+from .assembly_samples import SAMPLED_ERROR as SAMPLED_ERROR
+from .assembly_samples import AssemblySamples as AssemblySamples
+from .assembly_samples import assembly_of as assembly_of
 from .input_study import Study as Study
 from .input_study import study as study
 from .numbers import first_order as first_order
 from .numbers import relative_spread as relative_spread
 from .sampling import Samples as Samples
 from .sampling import Shares as Shares
+from .sampling import latin_hypercube as latin_hypercube
 from .sampling import nominal_value as nominal_value
 from .sampling import sample as sample
 from .sampling import sensitivities as sensitivities

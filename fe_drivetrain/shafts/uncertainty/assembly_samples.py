@@ -30,7 +30,7 @@ from fe_drivetrain.shafts.response.neighbours import Neighbours, Reuse
 from fe_drivetrain.shafts.response.prepared import STOP_AT
 from fe_drivetrain.shafts.response.unit_loads import some_responses
 
-ERROR = 1e-6
+SAMPLED_ERROR = 1e-6
 """Error of a sampled number by its iteration, relative: far below any band of samples."""
 
 _HUB = tuple(f"hub.stiffness.{motion}" for motion in MOTIONS)
@@ -58,8 +58,10 @@ class AssemblySamples:
     neighbours: Neighbours
 
     def sampled(self, scene: Scene) -> dict[str, float]:
-        """The numbers of a sampled scene by name, each with an error of about `ERROR`."""
-        return self.evaluate(scene, ERROR if self._has_reactions else math.sqrt(ERROR))
+        """The numbers of a sampled scene by name, each with an error of about `SAMPLED_ERROR`."""
+        return self.evaluate(
+            scene, SAMPLED_ERROR if self._has_reactions else math.sqrt(SAMPLED_ERROR)
+        )
 
     def evaluate(self, scene: Scene, tolerance: float = STOP_AT) -> dict[str, float]:
         """The numbers of a scene, by name.
@@ -137,7 +139,7 @@ def assembly_of(
         kept,
         [band for number, band in zip(found, bands, strict=True) if number.name in names],
         tuple(columns),
-        Neighbours(Reuse(known=ERROR)),
+        Neighbours(Reuse(known=SAMPLED_ERROR)),
     )
 
 

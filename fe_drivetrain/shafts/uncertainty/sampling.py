@@ -297,25 +297,47 @@ def sample(
     InputError
         Nothing is uncertain, or a sample is no scene.
     """
-    check_spreads(scene)
-    keys = tuple(spreads_of(scene))
-    from scipy.stats import qmc
-
-    quantiles = qmc.LatinHypercube(d=len(keys) + len(drawn), rng=seed).random(count).T
-    inputs = np.column_stack(
-        [d.ppf(q) for d, q in zip(_spreads(scene), quantiles[: len(keys)], strict=True)]
-    )
-    numbers = [np.floor(n * q) for n, q in zip(drawn.values(), quantiles[len(keys) :], strict=True)]
+    keys, rows = latin_hypercube(scene, count, seed, drawn)
     values = evaluated_rows(
-        np.column_stack([inputs, *numbers]),
+        rows,
         lambda row: _evaluated(scene, evaluate, keys, row, tuple(drawn)),
         content,
         lambda number: report(f"samples ({number} of {count})"),
     )
     return {
-        name: Samples(keys, inputs, values[name], nominal)
+        name: Samples(keys, rows[:, : len(keys)], values[name], nominal)
         for name, nominal in evaluate(scene).items()
     }
+
+
+def latin_hypercube(
+    scene: Drivetrain, count: int, seed: int = 0, drawn: Mapping[str, int] = NOTHING
+) -> tuple[tuple[str, ...], Floats]:
+    """Keys of the d uncertain values of a scene, and (count, d + m) samples of them.
+
+    Parameters
+    ----------
+    scene : Drivetrain
+        What is varied.
+    count, seed : int
+        Number of samples, and seed of the hypercube.
+    drawn : mapping of str to int
+        Numbers of m further keys, as in `sample`: the last columns.
+
+    Raises
+    ------
+    InputError
+        Nothing is uncertain.
+    """
+    check_spreads(scene)
+    keys = tuple(spreads_of(scene))
+    from scipy.stats import qmc
+
+    quantiles = qmc.LatinHypercube(d=len(keys) + len(drawn), rng=seed).random(count).T
+    of_keys, of_drawn = quantiles[: len(keys)], quantiles[len(keys) :]
+    inputs = [d.ppf(q) for d, q in zip(_spreads(scene), of_keys, strict=True)]
+    numbers = [np.floor(n * q) for n, q in zip(drawn.values(), of_drawn, strict=True)]
+    return keys, np.column_stack([*inputs, *numbers])
 
 
 def sobol_shares(
