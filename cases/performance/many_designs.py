@@ -42,6 +42,8 @@ SCENE = "main_bearing_bonded_uncertain"
 BORE = "shaft.sections.0.inner_diameter"
 BORES = (0.16, 0.25)
 """Of the sweep [m]; the shaft has 0.4 m outside."""
+SWEPT = 20
+"""Bores between these; a quick run has the first few."""
 QUANTITY = "main_bearing.My"
 SIZE, QUICK_SIZE = 1.0, 2.0
 """Factors on the sizes of the scene's elements."""
@@ -97,7 +99,7 @@ def run(run: Run, page: Page) -> None:
     size = QUICK_SIZE if run.quick else SIZE
     scene = scene.model_copy(update={"mesh": scene.mesh.scaled(size)})
     page.about(scene)
-    designs = run.count("designs", 4 if run.quick else 20)
+    designs = run.count("designs", 4 if run.quick else SWEPT)
     samples = run.count("samples", 4 if run.quick else 100)
     with run.step("compile"):
         alone(scene.model_copy(update={"mesh": scene.mesh.scaled(2.0 / size)}))
@@ -138,7 +140,7 @@ def sweep(scene: Scene, count: int, run: Run) -> tuple[Pairs, float]:
     near, rows = Neighbours(meshes=Cache(None)), []
     apart = dict.fromkeys(HUB, 0.0)
     same = 0.0
-    for number, bore in enumerate(np.linspace(*BORES, count).tolist(), 1):
+    for number, bore in enumerate(np.linspace(*BORES, max(count, SWEPT))[:count].tolist(), 1):
         run.report(f"sweep ({number} of {count})")
         changed = with_values(scene, {BORE: bore})
         own, seconds = clocked(lambda changed=changed: alone(changed))
@@ -245,7 +247,7 @@ def show(page: Page, swept: Pairs, sampled: Pairs, designs: int) -> None:
     page.text(
         "From neighbours: the mesh of a design is moved as its surfaces do, its inside by "
         "Laplace's equation, as long as no element loses half of its shape and no edge changes by "
-        "more than half; else the design is meshed. Its factor or hierarchy is the first design's, "
+        "more than 15 %; else the design is meshed. Its factor or hierarchy is the first design's, "
         f"until iterations for each decade of the error are {GROWTH:g} times as many. They start "
         "with Galerkin's solution in the space of the solutions so far, and end at the same error "
         f"as from zero; those of samples where numbers are known to {SAMPLED_ERROR:g}, and only "

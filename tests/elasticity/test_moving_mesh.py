@@ -52,7 +52,7 @@ def volumes(mesh):
 )
 def test_volumes_are_those_of_a_mesh_of_its_own(scene, movable, changes):
     changed = change_scene(scene, changes)
-    moved = movable.moved(parts_of(changed))
+    moved = movable.moved(parts_of(changed), most_stretch=1.5)
     assert moved.mesh is not None, moved.reason
     own = volumes(mesh_scene(changed))
     before = volumes(movable.mesh)
@@ -70,7 +70,7 @@ def test_surfaces_are_exact(scene, movable):
     changed = change_scene(
         scene, {"shaft.front": -1.05, f"{UNIT}.housing.centre_height": 0.44} | wider(0.464)
     )
-    moved = movable.moved(parts_of(changed))
+    moved = movable.moved(parts_of(changed), most_stretch=1.5)
     assert moved.mesh is not None, moved.reason
     mesh = moved.mesh
     at = {name: mesh.points[mesh.face_nodes(name)] for name in mesh.faces}
@@ -139,7 +139,7 @@ def test_elements_that_would_lose_their_shape_are_meshed_again(scene, movable):
 def test_bolt_holes_stay_round_and_move_along():
     scene = coarse_scene("bonded", **{f"{UNIT}.housing.base": "bolted"})
     changed = change_scene(scene, {f"{UNIT}.housing.bolt_spacing_y": 1.08})
-    mesh = MovableMesh(mesh_scene(scene), parts_of(scene)).moved(parts_of(changed)).mesh
+    mesh = MovableMesh(mesh_scene(scene), parts_of(scene)).moved(parts_of(changed), most_stretch=1.5).mesh
     places = mesh.points[mesh.face_nodes("main_bearing.housing.base")]
     away = np.hypot(np.abs(places[:, 0]) - 0.1, np.abs(places[:, 1]) - 0.54)
     assert away.min() == pytest.approx(0.026, rel=1e-3)

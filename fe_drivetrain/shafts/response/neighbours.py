@@ -44,7 +44,7 @@ FAMILIES = 3
 
 _JUDGED_FROM = 2.0  # decades: fewer say little about how fast an iteration converges
 _OF_A_POINT = 6  # rows of a constraint that holds the motions of one point
-_PACE_OF_FACTOR = 1.0  # iterations a decade that a factor of another design is kept for
+_PACE_OF_FACTOR = 2.0  # iterations a decade that a factor of another design is kept for
 
 
 @dataclass(frozen=True)
