@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from statistics import median
 from typing import TypeVar
 
@@ -140,11 +141,15 @@ def sweep(scene: Scene, count: int, run: Run) -> tuple[Pairs, float]:
     near, rows = Neighbours(meshes=Cache(None)), []
     apart = dict.fromkeys(HUB, 0.0)
     same = 0.0
+
+    def moved(changed: Scene) -> Response:
+        return unit_load_response(near.model(changed))
+
     for number, bore in enumerate(np.linspace(*BORES, max(count, SWEPT))[:count].tolist(), 1):
         run.report(f"sweep ({number} of {count})")
         changed = with_values(scene, {BORE: bore})
-        own, seconds = clocked(lambda changed=changed: alone(changed))
-        found, reused = clocked(lambda changed=changed: unit_load_response(near.model(changed)))
+        own, seconds = clocked(partial(alone, changed))
+        found, reused = clocked(partial(moved, changed))
         step = near.steps[-1]
         rows.append(
             {
@@ -176,14 +181,14 @@ def samples_of(scene: Scene, at: AssemblySamples, count: int, every: int, run: R
     for number, row in enumerate(inputs):
         run.report(f"samples ({number + 1} of {count})")
         changed = with_values(scene, dict(zip(keys, row.tolist(), strict=True)))
-        values, reused = clocked(lambda changed=changed: at.sampled(changed))
+        values, reused = clocked(partial(at.sampled, changed))
         step = at.neighbours.steps[-1]
         if number % every:
             continue
         own = AssemblySamples(
             at.numbers, at.bands, at.columns, Neighbours(NOTHING, meshes=Cache(None))
         )
-        exact, seconds = clocked(lambda own=own, changed=changed: own.evaluate(changed))
+        exact, seconds = clocked(partial(own.evaluate, changed))
         rows.append(
             {
                 "sample": number + 1,
