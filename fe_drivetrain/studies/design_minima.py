@@ -2,9 +2,10 @@
 
 Cheap quantities are multiplied by the ratio that the better level gave at the last design, and the
 search goes on from there, until both agree (multiplicative correction: Alexandrov et al. 2001, J.
-Aircraft 38(6)). How the ratio changes from design to design is found by a design of the better level
-along each range, where the search begins and where it would end, and between learned from the checks
-themselves (secants: Broyden 1965, Math. Comput. 19). The cheap level gives all gradients, the better one a few values.
+Aircraft 38(6)). How the ratio changes from design to design is found by a design of the better
+level along each range, where the search begins and where it would end, and between them learned
+from the checks themselves (secants: Broyden 1965, Math. Comput. 19). The cheap level gives all
+gradients, the better one a few values.
 """
 
 from __future__ import annotations
