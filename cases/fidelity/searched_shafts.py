@@ -13,7 +13,13 @@ from fe_drivetrain.common.cache import switched_off
 from fe_drivetrain.comparison.constrained_minimum import Minimum, slopes
 from fe_drivetrain.drivetrain_file import Scene, change_scene, library_scene
 from fe_drivetrain.report.suite import Record
-from fe_drivetrain.studies.design_minima import Problem, correction, minima_of
+from fe_drivetrain.studies.design_minima import (
+    Problem,
+    correction,
+    log_ratios,
+    minima_of,
+    with_slopes,
+)
 from fe_drivetrain.studies.design_quantities import DesignQuantities
 from fe_drivetrain.studies.design_request import design_request
 from fe_drivetrain.studies.design_trials import DesignTrials
@@ -108,19 +114,27 @@ def _timed_levels(scene: Scene, limit: str, keys: tuple[str, ...], rounds: int) 
         trials.quantities(start)  # what all share, as the housing, is nobody's cost
     rows: list[Record] = []
     spent = 0.0
+    shared = better.made
+
+    def ratios(at: Floats) -> Mapping[str, Floats] | None:
+        there, below = better.quantities(at), cheap.trials.quantities(at)
+        return None if there is None or below is None else log_ratios(there, below)
+
     for number in range(rounds + 1):
         begun = time.process_time()
         (found,) = minima_of(cheap, [start], quiet, [])
         start = found.at
         spent += time.process_time() - begun
         words = f"level 1, corrected {number} times" if number else "level 1"
-        rows.append(_row(words, spent, cheap, found, number, better))
+        rows.append(_row(words, spent, cheap, found, better.made - shared, better))
         begun = time.process_time()
         exact, own = better.quantities(found.at), cheap.trials.quantities(found.at)
         assert exact is not None
         assert own is not None
+        now = correction(cheap.corrected_by, start, exact, own)
+        now = now if number else with_slopes(now, ratios)
         spent += time.process_time() - begun
-        cheap = replace(cheap, corrected_by=correction(cheap.corrected_by, start, exact, own))
+        cheap = replace(cheap, corrected_by=now)
     begun = time.process_time()
     (found,) = minima_of(direct, [start], quiet, [])
     spent = time.process_time() - begun

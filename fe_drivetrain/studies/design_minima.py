@@ -2,9 +2,10 @@
 
 Cheap quantities are multiplied by the ratio that the better level gave at the last design, and the
 search goes on from there, until both agree (multiplicative correction: Alexandrov et al. 2001, J.
-Aircraft 38(6)). How the ratio changes from design to design is learned from the checks themselves
-(secants: Broyden 1965, Math. Comput. 19). The cheap level gives all gradients, the better one a few
-values.
+Aircraft 38(6)). How the ratio changes from design to design is found by a design of the better
+level along each range, where the search begins and where it would end, and between them learned
+from the checks themselves (secants: Broyden 1965, Math. Comput. 19). The cheap level gives all
+gradients, the better one a few values.
 """
 
 from __future__ import annotations
@@ -40,6 +41,9 @@ KEPT = 0.5 * MARGIN
 SETTLED = 2e-4
 """Share of the least value that ends a search: what would gain less is as good."""
 
+SECANT = 0.05
+"""Share of a range over which the slope of a ratio is taken: more than meshes make it jump by."""
+
 FAR = 1e-3
 """Share of a range: places that are less apart are one."""
 
@@ -47,7 +51,7 @@ OPEN = 0.01
 """Share of the largest price: one that may change by more is open."""
 
 _LEAST = 1e-12  # of a limit: what is less counts as this
-_STILL = 1e-6  # of the ranges: a move that is less tells nothing of how ratios change
+_STILL = 0.5 * SECANT  # a move that is less tells of jumps of meshes alone, not how ratios change
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,19 +97,62 @@ def correction(
     better, cheap : mapping of str to ndarray
         Its quantities at both levels; where one is zero, there is no ratio.
     """
-    logs, slopes = {}, {}
-    for name, values in better.items():
-        known = (values > 0.0) & (cheap[name] > 0.0)
-        ratio = np.divide(values, cheap[name], out=np.ones(len(values)), where=known)
-        logs[name] = np.log(ratio)
-        slopes[name] = np.zeros((len(values), len(at)))
+    logs, slopes = log_ratios(better, cheap), {}
+    for name, own in logs.items():
+        slopes[name] = np.zeros((len(own), len(at)))
         if before is not None:
             moved = at - before.at
             slopes[name] = before.slopes[name]
             if (size := float(moved @ moved)) > _STILL**2:
                 expected = before.logs[name] + before.slopes[name] @ moved
-                slopes[name] = slopes[name] + np.outer(logs[name] - expected, moved) / size
+                slopes[name] = slopes[name] + np.outer(own - expected, moved) / size
     return Correction(at, logs, slopes)
+
+
+def log_ratios(better: Mapping[str, Floats], cheap: Mapping[str, Floats]) -> dict[str, Floats]:
+    """Logarithm of the ratio of both levels, by quantity; 0 where there is no ratio.
+
+    Parameters
+    ----------
+    better, cheap : mapping of str to ndarray
+        Quantities of a design at both levels.
+    """
+    found = {}
+    for name, values in better.items():
+        known = (values > 0.0) & (cheap[name] > 0.0)
+        ratio = np.divide(values, cheap[name], out=np.ones(len(values)), where=known)
+        found[name] = np.log(ratio)
+    return found
+
+
+def with_slopes(
+    first: Correction, ratios: Callable[[Floats], Mapping[str, Floats] | None]
+) -> Correction:
+    """The first correction, with slopes of the ratio by one design along each range.
+
+    Parameters
+    ----------
+    first : Correction
+        The correction after the first check.
+    ratios : callable
+        Logarithms of the ratio at a place; None of a design that cannot be built.
+    """
+    at = first.at
+    if all(np.abs(log).max(initial=0.0) < MARGIN for log in first.logs.values()):
+        return first  # both levels say the same
+    middle = ratios(at)
+    assert middle is not None
+    slopes = {name: np.array(of) for name, of in first.slopes.items()}
+    for k in range(len(at)):
+        way = SECANT if at[k] < 0.5 else -SECANT
+        for step in (way, -way):
+            place = at + step * np.eye(len(at))[k]
+            there = ratios(place) if 0.0 <= place[k] <= 1.0 else None
+            if there is not None:
+                for name, of in slopes.items():
+                    of[:, k] = (there[name] - middle[name]) / step
+                break
+    return replace(first, slopes=slopes)
 
 
 @dataclass(frozen=True, eq=False)

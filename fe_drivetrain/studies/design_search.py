@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -29,7 +30,9 @@ from fe_drivetrain.studies.design_minima import (
     correction,
     flat_minima,
     infeasible,
+    log_ratios,
     minima_of,
+    with_slopes,
 )
 from fe_drivetrain.studies.design_quantities import DesignQuantities
 from fe_drivetrain.studies.design_request import DesignRequest
@@ -329,28 +332,33 @@ def _corrected(one: _Candidate, tolerance: float, report: Callable[[str], object
         cheap = trials.quantities(minimum.at)
         assert cheap is not None
         better = {name: of.values for name, of in checked.items()}
-        now = correction(problem.corrected_by, minimum.at, better, cheap)
         kept = all(
             problem.excess(limit, checked[limit.name].values).max() <= 0.0
             for limit in problem.limits
         )
-        problem = replace(problem, corrected_by=now)
-        before, values = minimum.at, problem.functions(minimum.at)
-        (minimum,) = minima_of(problem, [before], _named(report, "corrected: "), path)
+        before, gain = minimum.at, np.inf
+        now = correction(problem.corrected_by, before, better, cheap)
+        # slopes of the ratio anew where the search begins, and where it would end
+        for anew in (False, True) if number > 1 else (True,):
+            now = with_slopes(now, partial(_ratios, trials, report)) if anew else now
+            problem = replace(problem, corrected_by=now)
+            values = problem.functions(before)
+            (minimum,) = minima_of(problem, [before], _named(report, "corrected: "), path)
+            gain = float(values[0] - minimum.values[0]) / float(values[0])
+            if not (kept and gain < SETTLED):
+                break
         if minimum.violation > KEPT and best is None and not kept:
             raise infeasible(problem, minimum.at)
         if kept and (best is None or values[0] < best.minimum.values[0]):
             # what was checked is what is shown
-            shown = replace(minimum, at=before, values=values)
             best = replace(
                 one,
                 problem=problem,
-                minimum=shown,
+                minimum=replace(minimum, at=before, values=values),
                 path=path,
                 checked=checked,
                 corrected=minimum,
             )
-        gain = float(values[0] - minimum.values[0]) / float(values[0])
         if kept and gain < SETTLED:
             break
     else:
@@ -362,6 +370,20 @@ def _corrected(one: _Candidate, tolerance: float, report: Callable[[str], object
         f"levels 1 and {', '.join({of.level for of in checked.values()})} do not agree on a design "
         f"after {_ROUNDS} rounds: make ranges narrower, or the tolerance larger"
     )
+
+
+def _ratios(
+    trials: DesignTrials, report: Callable[[str], object], at: Floats
+) -> Mapping[str, Floats] | None:
+    """Logarithms of the ratio of levels 2 and 1 at a place; None of what cannot be built."""
+    report("how levels differ from design to design, level 2")
+    cheap = trials.quantities(at)
+    if cheap is None:
+        return None
+    try:
+        return log_ratios(trials.asked.values(trials.design(at), "better"), cheap)
+    except InputError:
+        return None
 
 
 def _named(report: Callable[[str], object], words: str) -> Progress:
