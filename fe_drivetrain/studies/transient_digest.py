@@ -267,7 +267,8 @@ def driven(
         if first is not None:
             against.add(times, values[:, first], values[:, rotor])
         kept = slice(-seen % every, None, every)  # evenly over the ends of pieces
-        shown.append((times[kept], values[kept]))
+        # a view would keep all of the piece
+        shown.append((times[kept].copy(), values[kept].copy()))
         seen += len(times)
     digest = FileDigest(
         end - float(history.time[0]),
