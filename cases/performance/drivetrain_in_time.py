@@ -14,12 +14,13 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.cases import case
-from fe_drivetrain.common import Floats, Times, cores, peak_memory, scratch_folder, timed_runs
+from fe_drivetrain.common import Floats, cores, peak_memory, scratch_folder, timed_runs
 from fe_drivetrain.common.processes import Processes
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 from fe_drivetrain.dynamics import Machine, Rung, machine_of
 from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs, plain_rungs, with_rollers
+from fe_drivetrain.geometry.shaft import Section
 from fe_drivetrain.report import error_bars, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.studies.transient_digest import FileDigest, digests, driven, moving_under
@@ -85,17 +86,19 @@ def finer_machines(machine: Machine, times: Sequence[int]) -> list[tuple[int, Ma
 
 def refined(machine: Machine, times: int) -> Machine:
     """The machine with so many times as many elements of each shaft."""
-    shafts = []
+    shafts, count = [], 6 * times
     for shaft in machine.shafts:
         sections = shaft.sections
-        if shaft.kind == "shaft" and times > 1 and sections is not None:
-            count = 6 * times
-            sections = tuple(
+        if sections is None and shaft.outer is not None:
+            sections = (Section(length=shaft.length, outer_diameter=shaft.outer),)
+        if shaft.kind == "shaft" and sections is not None:
+            pieces = tuple(
                 one.model_copy(update={"length": one.length / count})
                 for one in sections
                 for _ in range(count)
             )
-        shafts.append(shaft.model_copy(update={"sections": sections}))
+            shaft = shaft.model_copy(update={"sections": pieces, "outer": None})
+        shafts.append(shaft)
     return machine.model_copy(update={"shafts": shafts})
 
 
@@ -157,21 +160,15 @@ def paced(
     """Processor time of a step, digest included, on one core."""
     asked = options(STEP, span)
     history = asked.read(file)
-    few = options(STEP, 2.0 * STEP)
-    driven(Prepared(machine, rung, rated, hub_loads=True), history, few)  # loads compiled code
     begin = time.process_time()
     prepared = Prepared(machine, rung, rated, hub_loads=True)
-    before = time.process_time() - begin
-    _, winding = timed_runs(
-        lambda: driven(prepared, history, few), repeats, clock=time.process_time
-    )
     moving = moving_under(prepared.of, history, rated.slip)
+    before = time.process_time() - begin
+    driven(prepared, history, options(STEP, 2.0 * STEP), moving)  # loads compiled code
     until = float(history.time[0]) + span
-    _, whole = timed_runs(
-        lambda: driven(prepared, history, asked), repeats, clock=time.process_time
+    _, times = timed_runs(
+        lambda: driven(prepared, history, asked, moving), repeats, clock=time.process_time
     )
-    # the state at the beginning is found once, however long a history is
-    times = Times(tuple(one - winding.least for one in whole.seconds))
     _, alone = timed_runs(
         lambda: sum(len(one.times) for one in moving.pieces(STEP, until)),
         repeats,
@@ -188,7 +185,7 @@ def paced(
         "step, median [µs]": 1e6 * times.median / steps,
         "step, most [µs]": 1e6 * times.most / steps,
         "of it the motion [%]": 100.0 * alone.median / times.median,
-        "to begin [s]": before + winding.median,
+        "to begin [s]": before,
     }
 
 

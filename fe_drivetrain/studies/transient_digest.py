@@ -226,7 +226,10 @@ def moving_under(of: Running, history: DriveHistory | BaseHistory, slip: float) 
 
 
 def driven(
-    prepared: Prepared, history: DriveHistory | BaseHistory, asked: OperationOptions
+    prepared: Prepared,
+    history: DriveHistory | BaseHistory,
+    asked: OperationOptions,
+    moving: Operation | None = None,
 ) -> tuple[FileDigest, Samples]:
     """What a drivetrain does over a history: the digest, and samples for a chart.
 
@@ -238,9 +241,11 @@ def driven(
         What drives it, or moves its base.
     asked : OperationOptions
         Step, slopes, and until when.
+    moving : Operation, optional
+        The machine under the history, where it is known; that of `moving_under` else.
     """
     channels, rated = prepared.channels, prepared.rated
-    moving = moving_under(prepared.of, history, rated.slip)
+    moving = moving or moving_under(prepared.of, history, rated.slip)
     sums = _sums(channels, tuple(asked.slopes))
     hub = history if isinstance(history, DriveHistory) else None
     account, against, counter = EnergyAccount(), _Against(hub), prepared.reader.counter(hub)
@@ -262,7 +267,8 @@ def driven(
         if first is not None:
             against.add(times, values[:, first], values[:, rotor])
         kept = slice(-seen % every, None, every)  # evenly over the ends of pieces
-        shown.append((times[kept], values[kept]))
+        # a view would keep all of the piece
+        shown.append((times[kept].copy(), values[kept].copy()))
         seen += len(times)
     digest = FileDigest(
         end - float(history.time[0]),
