@@ -13,7 +13,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -103,14 +103,15 @@ def _solver() -> None:
     from scipy import sparse
 
     from fe_drivetrain.elasticity.operator import kernels
+    from fe_drivetrain.elasticity.operator.vectors import LANES
 
     n = 2
     eye = np.tile(np.eye(3), (n, 1, 1))
+    rounded: Any = eye.astype(np.float32)
     pattern = np.arange(n + 1, dtype=np.int32), np.arange(n, dtype=np.int32)
-    for columns in (kernels.LANES, 1):
+    for columns in (LANES, 1):
         X, B, D = (np.ones((3 * n, columns)) for _ in range(3))
         out = np.empty_like(X)
-        rounded = eye.astype(np.float32)
         kernels.chebyshev_step(*pattern, rounded, eye, X, B, D, out, 0.5, 0.5)
         kernels.residual(*pattern, rounded, X, B, out)
         kernels.residual(*pattern, eye, X, B, out)
