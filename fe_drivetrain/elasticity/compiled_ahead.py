@@ -107,11 +107,11 @@ def _solver() -> None:
 
     n = 2
     eye = np.tile(np.eye(3), (n, 1, 1))
+    rounded: Any = eye.astype(np.float32)
     pattern = np.arange(n + 1, dtype=np.int32), np.arange(n, dtype=np.int32)
     for columns in (LANES, 1):
         X, B, D = (np.ones((3 * n, columns)) for _ in range(3))
         out = np.empty_like(X)
-        rounded: Any = eye.astype(np.float32)
         kernels.chebyshev_step(*pattern, rounded, eye, X, B, D, out, 0.5, 0.5)
         kernels.residual(*pattern, rounded, X, B, out)
         kernels.residual(*pattern, eye, X, B, out)
