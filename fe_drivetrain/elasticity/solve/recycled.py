@@ -125,7 +125,7 @@ class Recycled:
             self._work = np.zeros((2, *V.shape))
         zero, product = self._work
         kernels.residual(*kernels.pattern_of(K), K.data, V, zero, product)
-        return -(V.T @ product)
+        return np.asarray(-(V.T @ product))
 
     def learn(
         self,

@@ -235,7 +235,8 @@ def factorise(
     assert isinstance(system, System)
     if method in ITERATIVE:
         made = multigrid.build(system) if method == "multigrid" else schwarz.build(system)
-        held, by = made.bytes, made.precondition
+        held = made.bytes
+        by: Callable[[Floats], Floats] = made.precondition
 
         @cache
         def foreseen() -> float:
