@@ -161,8 +161,7 @@ class MovableMesh:
     def _of_part(
         self, part: str, points: Floats, parts: Parts, bores: Mapping[str, float]
     ) -> Shifts | str:
-        before = self.parts.meridian(part, self._bores), parts.meridian(part, bores)
-        old, new = before
+        old, new = self.parts.meridian(part, self._bores), parts.meridian(part, bores)
         if old is not None and new is not None:
             if not same_outline(old, new, self.parts.seats(), parts.seats()):
                 return f"{part} has another outline: steps, tapers or seats differ"
