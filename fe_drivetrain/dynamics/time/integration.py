@@ -130,8 +130,10 @@ class EqualSteps:
             State at the beginning.
         steps, every : int
             Number of steps, and of steps from record to record.
-        watch, tolerance
-            As of `integrate`.
+        watch : array_like or None
+            Rows that are recorded, as of `integrate`.
+        tolerance : float
+            Tolerance of Newton's method, as of `integrate`.
         """
         mechanism = self.stepper.mechanism
         mechanism.check_base(begin.time, begin.time + steps * self.stepper.model.matrices.dt)
@@ -150,10 +152,14 @@ def equal_steps(
 
     Parameters
     ----------
-    equations, acting, scheme
-        As of `integrate`, without brakes.
+    equations : Equations
+        Equations of motion.
+    acting : Acting
+        What acts, without brakes.
     step : float
         Length of a step [s].
+    scheme : Scheme
+        The scheme, as of `integrate`.
 
     Raises
     ------
