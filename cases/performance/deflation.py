@@ -254,9 +254,9 @@ def answer(page: Page, rows: list[Record]) -> None:
     jacobi = [row for row in rows if row["preconditioner"] == JACOBI and row["ratio"] > 1.0]
     page.answer(
         "Is it worth while to deflate rigid motions?",
-        f"Of bodies alike it saves {saved(alike)} of {alike['iterations without']} iterations "
-        f"beside multigrid, at most; of bodies {most['ratio']:g} times as stiff as their "
-        f"neighbours, {saved(most)} of {most['iterations without']} ({most['problem']}).",
+        f"Beside multigrid it saves {saved(alike)} of {alike['iterations without']} iterations of "
+        f"bodies alike, {saved(most)} of {most['iterations without']} of bodies "
+        f"{most['ratio']:g} times as stiff as their neighbours.",
         [
             page.value(
                 "iterations with deflation, bodies alike",

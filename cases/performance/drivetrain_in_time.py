@@ -114,14 +114,13 @@ def refined(machine: Machine, times: int) -> Machine:
 )
 def run(run: Run, page: Page) -> None:
     """Measure each, and check that digests are those of samples and of one process."""
-    quick = run.quick
     machine, rated, rungs = drivetrain()
-    repeats = run.count("repeats", 1 if quick else 5)
-    count = run.count("files", QUICK_FILES if quick else FILES, least=2)
+    repeats = run.count("repeats", 1 if run.quick else 5)
+    count = run.count("files", QUICK_FILES if run.quick else FILES, least=2)
     with scratch_folder() as folder:
         long = write_loads(folder / "long.csv", 0, WHOLE)
         with run.step("steps a second"):
-            span = QUICK_MEASURED if quick else MEASURED
+            span = QUICK_MEASURED if run.quick else MEASURED
             rows = [
                 paced(name, machine, rated, rung, long, span, repeats)
                 for name, rung in rungs.items()
@@ -129,23 +128,23 @@ def run(run: Run, page: Page) -> None:
         with run.step("growth"):
             grown = [
                 paced(f"{name}, {k} x elements", finer, rated, rung, long, span, repeats)
-                for k, finer in finer_machines(machine, QUICK_REFINED if quick else REFINED)
+                for k, finer in finer_machines(machine, QUICK_REFINED if run.quick else REFINED)
                 for name, rung in rungs.items()
             ]
         with run.step("memory over length"):
-            lengths = QUICK_LENGTHS if quick else LENGTHS
+            lengths = QUICK_LENGTHS if run.quick else LENGTHS
             memory = [remembered(machine, rated, rungs[ROLLERS], long, one) for one in lengths]
         with run.step("digests and samples"):
             check_digest(page, machine, rated, rungs[ROLLERS], long, span)
         with run.step("files"):
-            each = QUICK_EACH if quick else EACH
+            each = QUICK_EACH if run.quick else EACH
             of = [write_loads(folder / f"made_{k}.csv", k, each) for k in range(1, count + 1)]
             farm = farmed(run, page, machine, rated, rungs[ROLLERS], of)
         with run.step("error over the step"):
             errors = over_steps(
-                machine, rated, rungs[ROLLERS], long, QUICK_SHORT if quick else SHORT
+                machine, rated, rungs[ROLLERS], long, QUICK_SHORT if run.quick else SHORT
             )
-    answer(page, rows, memory, farm, quick)
+    answer(page, rows, memory, farm, run.quick)
     show(page, rows, grown, memory, farm, errors)
 
 
@@ -343,9 +342,8 @@ def answer(
         )
     page.answer(
         "How fast is a whole drivetrain in time, on rollers and with digests?",
-        f"{rollers[RATE]:,.0f} steps a second and core on rollers, {springs[RATE]:,.0f} on "
-        f"springs: ten minutes at 1 kHz take {whole:.3g}\u00a0s and {plain:.3g}\u00a0s of a "
-        f"processor, {MANY} files on rollers {hours:.2g}\u00a0h on two cores.",
+        f"Ten minutes at 1 kHz take {whole:.3g}\u00a0s of a core on rollers, {plain:.3g}\u00a0s "
+        f"on springs; {MANY} such files take two cores {hours:.2g}\u00a0h on rollers.",
         [
             page.value("steps a second and core, on rollers", float(rollers[RATE])),
             page.value("steps a second and core, on springs", float(springs[RATE])),

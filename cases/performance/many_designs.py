@@ -100,8 +100,8 @@ def run(run: Run, page: Page) -> None:
     size = QUICK_SIZE if run.quick else SIZE
     scene = scene.model_copy(update={"mesh": scene.mesh.scaled(size)})
     page.about(scene)
-    designs = run.count("designs", 4 if run.quick else SWEPT)
-    samples = run.count("samples", 4 if run.quick else 100)
+    designs = run.count("designs", 4 if run.quick else SWEPT, least=3)
+    samples = run.count("samples", 4 if run.quick else 100, least=4)
     with run.step("compile"):
         alone(scene.model_copy(update={"mesh": scene.mesh.scaled(2.0 / size)}))
     with run.step("bands"):
@@ -284,9 +284,8 @@ def answer(page: Page, swept: Pairs, sampled: Pairs, band: Mapping[str, float]) 
     minute = sampled.a_minute(REUSED)
     page.answer(
         "How many samples a minute does an assembly of solids allow?",
-        f"{minute:.3g} samples a minute from neighbours against {sampled.a_minute(OWN):.3g} for "
-        f"themselves, {_ratio(sampled.ratios)} times; {swept.a_minute(REUSED):.3g} bores of a "
-        f"sweep against {swept.a_minute(OWN):.3g}, {_ratio(swept.ratios)} times.",
+        f"From neighbours {minute:.3g} a minute, each for itself {sampled.a_minute(OWN):.3g}; of "
+        f"the bores of a sweep {swept.a_minute(REUSED):.3g} and {swept.a_minute(OWN):.3g}.",
         [
             page.value(
                 "samples a minute", minute, beside=sampled.a_minute(OWN), by="each for itself"
@@ -316,6 +315,10 @@ def answer(page: Page, swept: Pairs, sampled: Pairs, band: Mapping[str, float]) 
             "neither.",
             "Bores and samples are of one scene, a bonded main bearing.",
         ],
+    )
+    page.say(
+        f"Time for itself over time from a neighbour: samples {_ratio(sampled.ratios)}, bores of a "
+        f"sweep {_ratio(swept.ratios)}."
     )
     for name, pairs in (("sweep", swept), ("samples", sampled)):
         page.data(name, {"ratios": pairs.ratios, "apart": dict(pairs.apart), "rows": pairs.rows})

@@ -89,10 +89,9 @@ def run(run: Run, page: Page) -> None:
         alike = limits_alike(page, 1.0 if run.quick else 4.0)
     page.answer(
         "When does the least design of a search mean little?",
-        f"Values that weigh less than {formatted(shortest, 1)} of the whole are left anywhere, "
-        "and a price is open where limits or ends of ranges meet; the least value is right always.",
+        f"Where values weigh less than {formatted(shortest, 1)} of the whole, or limits meet: "
+        "then values or prices are open. The least itself is right.",
         [
-            page.judged("largest error of the least mass, however flat"),
             page.value("least share of the mass with which a value is found", shortest),
             page.value("distance of a limit from ends of ranges, for its price to count", idle),
             page.value("distance of two limits alike, for prices of their own", alike),

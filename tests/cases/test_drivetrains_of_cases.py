@@ -72,6 +72,7 @@ UNSTAMPED = {
             "verification/band_coverage",
         ),
         "of the time that a method takes, with a drivetrain for its size": (
+            "performance/deflation",
             "performance/drivetrain_in_time",
             "performance/drivetrain_transient",
             "performance/level_two",

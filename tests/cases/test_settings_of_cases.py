@@ -84,7 +84,11 @@ def test_cases_that_read_settings_declare_them():
     found = all_cases()
     assert tuple(found["performance/peers"].settings) == tuple(peer_settings.DEFAULTS)
     takers = [name for name, case in found.items() if case.changes == "scene"]
-    assert {name.partition("/")[0] for name in takers} == {"main_bearing", "fidelity"}
+    assert {name.partition("/")[0] for name in takers} == {
+        "main_bearing",
+        "fidelity",
+        "performance",
+    }
     for name in takers:
         if name.startswith("main_bearing/"):  # the study chooses its solver by itself
             assert ("solver" in found[name].settings) == (name != "main_bearing/levels"), name

@@ -162,7 +162,9 @@ def test_a_page_says_why_a_quantity_needs_solids(
 ) -> None:
     """Where level 2 is not enough, by its own two parts; the better value stands in for solids."""
 
-    def better(report: object, name: str, scene: object, quantities: Any) -> dict[str, Value]:
+    def better(
+        report: object, name: str, scene: object, quantities: Any, near: object
+    ) -> dict[str, Value]:
         return {one.name: Value(np.ones(1), 1e-3, 4) for one in quantities}
 
     monkeypatch.setattr(designs_module, "_as_assembly", better)

@@ -125,7 +125,7 @@ def test_a_quantity_that_is_zero_is_refused() -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--quantity", "main_bearing.Mq"], "unknown: use one of"),
+        (["--quantity", "main_bearing.Mq"], "unknown: did you mean 'main_bearing.Mz'"),
         (["--quantity", "main_bearing.My", "--tolerance", "much"], "must be between 0 and 100 %"),
         (["--quantity", "main_bearing.My", "--load", "hub.Fq=1"], "'hub.Fq' is unknown"),
         (["--quantity", "main_bearing.My", "--load", "hub.Fz=no"], "must be a number"),
