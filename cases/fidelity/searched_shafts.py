@@ -132,7 +132,7 @@ def _timed_levels(scene: Scene, limit: str, keys: tuple[str, ...], rounds: int) 
         assert exact is not None
         assert own is not None
         now = correction(cheap.corrected_by, start, exact, own)
-        now = now if number else with_slopes(now, ratios)
+        now = with_slopes(now, ratios) if now.is_far else now
         spent += time.process_time() - begun
         cheap = replace(cheap, corrected_by=now)
     begun = time.process_time()

@@ -256,7 +256,7 @@ def answer(page: Page, rows: list[Record]) -> None:
         "Is it worth while to deflate rigid motions?",
         f"Beside multigrid it saves {saved(alike)} of {alike['iterations without']} iterations of "
         f"bodies alike, {saved(most)} of {most['iterations without']} of bodies "
-        f"{most['ratio']:g} times as stiff as their neighbours.",
+        f"{most['ratio']:,.0f} times as stiff as their neighbours.",
         [
             page.value(
                 "iterations with deflation, bodies alike",
@@ -265,7 +265,7 @@ def answer(page: Page, rows: list[Record]) -> None:
                 by="without",
             ),
             page.value(
-                f"iterations with deflation, ratio {most['ratio']:g}",
+                f"iterations with deflation, ratio {most['ratio']:,.0f}",
                 most["iterations with"],
                 beside=most["iterations without"],
                 by="without",

@@ -66,13 +66,21 @@ class Correction:
         (k,) logarithm of the ratio there, by quantity.
     slopes : Mapping[str, Floats]
         (k, d) of the logarithm over the ranges, as far as designs so far tell.
+    taken : Floats or None
+        (d,) where the slopes were found by designs along each range; None where they were not.
     """
 
     at: Floats
     logs: Mapping[str, Floats]
     slopes: Mapping[str, Floats]
+    taken: Floats | None = None
 
     __repr__ = short_repr
+
+    @property
+    def is_far(self) -> bool:
+        """Whether the slopes are of elsewhere: one design after another tells of one way only."""
+        return self.taken is None or bool(np.abs(self.at - self.taken).max(initial=0.0) > SECANT)
 
     def factors(self, at: Floats) -> dict[str, Floats]:
         """Ratio of each quantity at a place."""
@@ -106,7 +114,7 @@ def correction(
             if (size := float(moved @ moved)) > _STILL**2:
                 expected = before.logs[name] + before.slopes[name] @ moved
                 slopes[name] = slopes[name] + np.outer(own - expected, moved) / size
-    return Correction(at, logs, slopes)
+    return Correction(at, logs, slopes, None if before is None else before.taken)
 
 
 def log_ratios(better: Mapping[str, Floats], cheap: Mapping[str, Floats]) -> dict[str, Floats]:
@@ -128,12 +136,12 @@ def log_ratios(better: Mapping[str, Floats], cheap: Mapping[str, Floats]) -> dic
 def with_slopes(
     first: Correction, ratios: Callable[[Floats], Mapping[str, Floats] | None]
 ) -> Correction:
-    """The first correction, with slopes of the ratio by one design along each range.
+    """A correction with slopes of the ratio by one design along each range.
 
     Parameters
     ----------
     first : Correction
-        The correction after the first check.
+        The correction after a check.
     ratios : callable
         Logarithms of the ratio at a place; None of a design that cannot be built.
     """
@@ -152,7 +160,7 @@ def with_slopes(
                 for name, of in slopes.items():
                     of[:, k] = (there[name] - middle[name]) / step
                 break
-    return replace(first, slopes=slopes)
+    return replace(first, slopes=slopes, taken=at)
 
 
 @dataclass(frozen=True, eq=False)

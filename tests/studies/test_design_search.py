@@ -11,6 +11,7 @@ from coarse_scenes import LENGTHS, coarse_scene
 
 from fe_drivetrain.cases.references.least_shafts import bending_stiffness, least_bored_shaft
 from fe_drivetrain.command_line.app import main
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.comparison.constrained_minimum import slopes, starting_points
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
@@ -25,7 +26,15 @@ from fe_drivetrain.shafts.fidelity.loaded_shaft import (
 from fe_drivetrain.shafts.fidelity.quantity import named_load
 from fe_drivetrain.shafts.uncertainty.resolver import Resolver
 from fe_drivetrain.studies import design_request, design_search, search
-from fe_drivetrain.studies.design_minima import MARGIN, Problem, minima_of
+from fe_drivetrain.studies.design_minima import (
+    MARGIN,
+    SECANT,
+    Correction,
+    Problem,
+    correction,
+    minima_of,
+    with_slopes,
+)
 from fe_drivetrain.studies.design_quantities import DesignQuantities
 from fe_drivetrain.studies.design_request import parse_limit
 from fe_drivetrain.studies.design_search import SearchResult
@@ -352,3 +361,28 @@ def test_lists_that_keep_no_limit_are_to_be_given_more_values() -> None:
     assert "is kept by no design listed" in message
     assert message.endswith("relax it, or add values to the lists")
     assert "inner_diameter=0.1," in message  # the stiffest comes nearest
+
+
+def test_slopes_of_a_ratio_count_where_they_were_found() -> None:
+    """A move tells of one way alone: beyond a secant the others are asked again."""
+
+    one = {"deflection": np.ones(1)}
+
+    def ratios(at: Floats) -> dict[str, Floats]:
+        return {"deflection": np.array([at[0] ** 2 - 0.5 * at[1]])}
+
+    def checked(before: Correction | None, at: Floats) -> Correction:
+        return correction(before, at, {"deflection": np.exp(ratios(at)["deflection"])}, one)
+
+    first = checked(None, np.array([0.2, 0.7]))
+    assert first.is_far
+    found = with_slopes(first, ratios)
+    assert not found.is_far
+    assert found.slopes["deflection"][0] == pytest.approx([2 * 0.2 + SECANT, -0.5])
+    near = checked(found, np.array([0.2, 0.7 - 0.9 * SECANT]))
+    assert not near.is_far
+    far = checked(near, np.array([0.6, 0.7 - 0.9 * SECANT]))
+    assert far.is_far
+    assert with_slopes(far, ratios).slopes["deflection"][0] == pytest.approx(
+        [2 * 0.6 - SECANT, -0.5]
+    )
