@@ -315,6 +315,22 @@ class Housing(Part):
             for sign_x, sign_y in product((-1, 1), (-1, 1))
         ]
 
+    def named_places(self, bearing: Bearing) -> dict[str, tuple[float, float, float]]:
+        """Places of its named points [m].
+
+        Parameters
+        ----------
+        bearing : Bearing
+            The bearing that it holds.
+        """
+        x, outer = bearing.x, self.outer_radius(bearing)
+        return {
+            "top": (x, 0.0, outer),
+            "side_left": (x, outer, 0.0),
+            "side_right": (x, -outer, 0.0),
+            "bedplate": (x, 0.0, -self.centre_height),
+        }
+
     def build(self, bearing: Bearing) -> HousingSolid:
         """Add the housing of a bearing, its washer footprints and its named points to gmsh."""
         occ = gmsh.model.occ
@@ -331,12 +347,8 @@ class Housing(Part):
             )
             washers += [tag for _, tag in ring]
         ((_, volume),), _ = occ.cut(block, tools)
-        points = {
-            "top": occ.addPoint(x, 0, outer),
-            "side_left": occ.addPoint(x, outer, 0),
-            "side_right": occ.addPoint(x, -outer, 0),
-            "bedplate": occ.addPoint(x, 0, -self.centre_height),
-        }
+        named = self.named_places(bearing)
+        points = {name: occ.addPoint(*place) for name, place in named.items()}
         return HousingSolid(int(volume), tuple(washers), points)
 
     def _body(self, x: float, outer: float) -> int:

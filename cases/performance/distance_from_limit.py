@@ -228,7 +228,7 @@ def level_bytes(level: multigrid.Level) -> float:
 def set_up_bytes(system: System, hierarchy: multigrid.Hierarchy) -> dict[str, float]:
     """Bytes of set-up, and of each of its steps.
 
-    Of each level the stiffness is read and what smooths written; read as often as Lanczos has
+    The stiffness of each level is read and what smooths written; read as often as Lanczos has
     steps; and read once more with the prolongation, of which the stiffness of the next level is
     made. The prolongation is written in both directions.
     """

@@ -67,7 +67,7 @@ def exudyn_motion(
 
 def fill(system: Any, equations: Equations, loads: Loads, begin: State) -> Any:
     """Add the equations to Exudyn's system; return the sensor of its coordinates."""
-    exudyn, items = import_module("exudyn"), import_module("exudyn.itemInterface")
+    items = import_module("exudyn.itemInterface")
     n = len(equations.mass)
     node = system.AddNode(
         items.NodeGenericODE2(
@@ -86,6 +86,12 @@ def fill(system: Any, equations: Equations, loads: Loads, begin: State) -> Any:
             **laws_of(equations, loads),
         )
     )
+    return assembled(system, node)
+
+
+def assembled(system: Any, node: Any) -> Any:
+    """Assemble Exudyn's system, and return the sensor of a node's coordinates."""
+    exudyn, items = import_module("exudyn"), import_module("exudyn.itemInterface")
     sensor = system.AddSensor(
         items.SensorNode(
             nodeNumber=node,

@@ -42,7 +42,7 @@ from fe_drivetrain.shafts.uncertainty import (
 SCENE = "main_bearing_bonded_uncertain"
 BORE = "shaft.sections.0.inner_diameter"
 BORES = (0.16, 0.25)
-"""Of the sweep [m]; the shaft has 0.4 m outside."""
+"""Bores of the sweep [m]; the shaft has 0.4 m outside."""
 SWEPT = 20
 """Bores between these; a quick run has the first few."""
 QUANTITY = "main_bearing.My"
@@ -64,7 +64,7 @@ class Pairs:
     Attributes
     ----------
     rows : list of Record
-        Of each design, times [s] and iterations both ways.
+        Times [s] and iterations of each design, both ways.
     apart : Mapping[str, float]
         Largest relative difference of each number between the two ways, over all designs.
     """

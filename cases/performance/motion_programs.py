@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from scipy import linalg
 
+from fe_drivetrain.cases.performance.exudyn_motion import assembled
 from fe_drivetrain.cases.performance.motion_problems import (
     BEARING,
     BEARING_DAMPING,
@@ -181,15 +182,7 @@ def _fill(exudyn: Any, system: Any, problem: Problem) -> tuple[Any, Floats, list
         *_add_loads(exudyn, system, node, problem.loads, T),
         *_add_meshes(exudyn, system, node, problem, meshes),
     ]
-    sensor = system.AddSensor(
-        items.SensorNode(
-            nodeNumber=node,
-            storeInternal=True,
-            outputVariableType=exudyn.OutputVariableType.Coordinates,
-        )
-    )
-    system.Assemble()
-    return sensor, T, functions
+    return assembled(system, node), T, functions
 
 
 def _symbolic(system: Any, function: Any, name: str, kind: str) -> Any:

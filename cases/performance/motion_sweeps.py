@@ -36,7 +36,7 @@ class Point:
     error : float
         Largest error of a mesh's elongation at the records, over the largest elongation.
     times : Times
-        Of all runs, for the whole duration.
+        Times of all runs, for the whole duration.
     """
 
     method: Method

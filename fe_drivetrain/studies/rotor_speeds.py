@@ -36,7 +36,7 @@ def check_speed(name: str, speed: float, rated: float | None, times: float, fix:
     name : str
         What has the speed.
     speed : float
-        Of the rotor [rad/s].
+        Speed that is checked [rad/s].
     rated : float or None
         Its rated speed [rad/s].
     times : float

@@ -23,11 +23,11 @@ class TorqueClass(NamedTuple):
     Attributes
     ----------
     torque : float
-        Of the rotor [N m]; negative ones load the other flanks.
+        Torque of the rotor [N m]; negative ones load the other flanks.
     hours : float
         Time [h].
     speed : float
-        Of the rotor [rad/s].
+        Speed of the rotor [rad/s].
     """
 
     torque: float

@@ -79,7 +79,7 @@ def test_iterations_are_few_with_it_and_many_without(system, rng):
 
 @pytest.mark.parametrize("plain", [True, False])
 def test_the_coarse_product_is_that_of_sparse_matrices(system, rng, plain):
-    """Of blocks that are a number times the identity, and of full ones."""
+    """Products of blocks that are a number times the identity, and of full ones."""
     n, n_coarse = system.K.shape[0] // 3, 40
     some = sparse.random_array((n, n_coarse), density=0.05, rng=rng, format="csr")
     blocks = np.eye(3) if plain else rng.standard_normal((3, 3))

@@ -39,6 +39,7 @@ from fe_drivetrain.dynamics.time.mechanism import mechanism_of
 from fe_drivetrain.dynamics.time.motion import State, at_rest
 from fe_drivetrain.dynamics.time.newton_steps import MAX_STEPS, factorise, solve
 from fe_drivetrain.dynamics.time.schemes import AVERAGE
+from fe_drivetrain.dynamics.time.step_loop import histories_at
 from fe_drivetrain.dynamics.time.stepper import TOLERANCE, prepared
 
 NODES = np.array([0.0, 0.5 - np.sqrt(0.05), 0.5 + np.sqrt(0.05), 1.0])
@@ -255,25 +256,6 @@ def _times(W: Floats, x: Floats, y: Floats) -> None:  # pragma: no cover - compi
 
 
 @njit(cache=True, error_model="numpy")
-def _loads(
-    tables: tuple[Floats, Floats], t: float, place: int, x: Floats, first: int
-) -> int:  # pragma: no cover - compiled
-    """Histories at t into x from a place on; the place in the table from which to look on."""
-    times, histories = tables
-    last = len(times) - 1
-    while place < last and times[place + 1] < t:
-        place += 1
-    share = 0.0
-    if t > times[0] and place < last:
-        share = (t - times[place]) / (times[place + 1] - times[place])
-    for j in range(histories.shape[1]):
-        x[first + j] = histories[place, j]
-        if share != 0.0:
-            x[first + j] += share * (histories[place + 1, j] - histories[place, j])
-    return place
-
-
-@njit(cache=True, error_model="numpy")
 def _forces(laws: Laws, t: float, i: int, m: Memory) -> None:  # pragma: no cover - compiled
     """Forces of laws at node i, and their tangents."""
     r, y = m.values.shape[2], m.values[i]
@@ -391,7 +373,8 @@ def _march(
     begin, steps, every, tolerance = span
     s, r, states, p = m.values.shape[0], m.values.shape[2], w.end.shape[0], tables[1].shape[1]
     end, by_laws = np.zeros(states), np.zeros(states)
-    place = _loads(tables, begin, int(np.int64(0)), x, states + p)
+    times, histories, after = tables[0], tables[1], x[states + p : states + 2 * p]
+    place = histories_at(times, histories, begin, int(np.int64(0)), after)
     if r > 0:
         touching(laws, begin, m.values[0], m.laws)
         _forces(laws, begin, int(np.int64(0)), m)
@@ -402,7 +385,7 @@ def _march(
         t = begin + (step - 1) * w.step
         for j in range(p):
             x[states + j] = x[states + p + j]
-        place = _loads(tables, begin + step * w.step, place, x, states + p)
+        place = histories_at(times, histories, begin + step * w.step, place, after)
         _times(w.end, x, end)
         if r > 0:
             touching(laws, t, m.values[0], m.laws)

@@ -30,7 +30,7 @@ from fe_drivetrain.dynamics.time.motion import Motion
 from fe_drivetrain.dynamics.time.rolling_bearings import RollingBearings, rolling_bearings
 
 _CLOSE = 1e-9
-"""Of the rows of rollers over those of the springs in whose place they are."""
+"""Part of the rows of rollers that those of the springs in their place may miss, relative."""
 
 
 @dataclass(frozen=True)

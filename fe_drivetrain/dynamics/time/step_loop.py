@@ -144,11 +144,10 @@ def _copy(x: Floats, i: int, y: Floats, j: int) -> None:  # pragma: no cover - c
 
 
 @inner_loop
-def _load(
-    drive: Drive, t: float, place: int, w: Work, into: int
+def histories_at(
+    times: Floats, histories: Floats, t: float, place: int, values: Floats
 ) -> int:  # pragma: no cover - compiled
-    """Loads at t into a vector; the place in the table from which to look on."""
-    times, histories, value = drive.times, drive.histories, w.load
+    """Histories at t into values; the place in the table from which to look on."""
     last = len(times) - 1
     if t <= times[0]:
         place = 0
@@ -157,11 +156,20 @@ def _load(
     share = 0.0
     if t > times[0] and place < last:
         share = (t - times[place]) / (times[place + 1] - times[place])
-    for j in range(value.shape[1]):
-        value[0, j] = histories[place, j]
+    for j in range(histories.shape[1]):
+        values[j] = histories[place, j]
         if share != 0.0:
-            value[0, j] += share * (histories[place + 1, j] - histories[place, j])
-    _times(drive.patterns, 0, value, 0, w.vectors, into)
+            values[j] += share * (histories[place + 1, j] - histories[place, j])
+    return place
+
+
+@inner_loop
+def _load(
+    drive: Drive, t: float, place: int, w: Work, into: int
+) -> int:  # pragma: no cover - compiled
+    """Loads at t into a vector; the place in the table from which to look on."""
+    place = histories_at(drive.times, drive.histories, t, place, w.load[0])
+    _times(drive.patterns, 0, w.load, 0, w.vectors, into)
     return place
 
 

@@ -70,7 +70,7 @@ class MovableMesh:
     Parameters
     ----------
     mesh : Mesh
-        Of these parts, as `fe_drivetrain.elasticity.mesh.generation.generate` makes it.
+        The mesh of these parts, as `fe_drivetrain.elasticity.mesh.generation.generate` makes it.
     parts : Parts
         What it was generated from.
     """
@@ -256,14 +256,8 @@ def _named_shift(name: str, point: Floats, before: Parts, after: Parts) -> Float
         if block is None:
             return None
         bearing, housing = block
-        outer = housing.outer_radius(bearing)
-        places = {
-            "top": (0.0, outer),
-            "side_left": (outer, 0.0),
-            "side_right": (-outer, 0.0),
-            "bedplate": (0.0, -housing.centre_height),
-        }
+        places = housing.named_places(bearing)
         if where not in places:
             return None
-        found.append(np.array([bearing.x, *places[where]]))
+        found.append(np.array(places[where]))
     return np.asarray(found[1] - found[0])

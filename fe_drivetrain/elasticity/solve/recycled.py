@@ -24,7 +24,7 @@ MOST = 96
 ROOM = 2**27
 """Memory of the vectors at most, in bytes; their products take twice as much again."""
 
-#: Of the energy norm of a solution: what it adds to a space by less is as good as known.
+#: Share of the energy norm of a solution: what it adds to a space by less is as good as known.
 KNOWN = 1e-8
 
 _DEPENDENT = 1e-12  # of the largest eigenvalue: vectors that say nothing new

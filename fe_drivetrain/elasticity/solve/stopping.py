@@ -39,7 +39,15 @@ def tail_ratio(terms: NDArray[np.float64]) -> NDArray[np.float64]:
     ndarray
         (m,) 1 or more.
     """
-    tails = np.cumsum(terms[::-1], axis=0)[::-1]  # from each step to the last
+    return _ratio(terms, _tails(terms))
+
+
+def _tails(terms: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(k, m) sums of the terms from each step to the last."""
+    return np.asarray(np.cumsum(terms[::-1], axis=0)[::-1])
+
+
+def _ratio(terms: NDArray[np.float64], tails: NDArray[np.float64]) -> NDArray[np.float64]:
     # At the start convergence is another. A window of 1e-4 fell below half the truth on thin tubes.
     recent = tails <= _RECENT * tails[0]
     recent |= ~recent.any(axis=0)
@@ -65,9 +73,9 @@ def energy_error(
         The least to take for `tail_ratio`: what iterations from zero have shown before. The few
         steps from a good start show little of how the iteration converges.
     """
-    last = terms[-1]
-    total = np.cumsum(terms[::-1], axis=0)[-1] + started
-    ratio = np.maximum(tail_ratio(terms), least_ratio)
+    last, tails = terms[-1], _tails(terms)
+    total = tails[0] + started
+    ratio = np.maximum(_ratio(terms, tails), least_ratio)
     squared = np.divide(ratio * last, total, out=np.zeros_like(last), where=total > 0.0)
     return float(np.sqrt(squared.max()))
 

@@ -262,7 +262,7 @@ class _Preparation:
     def _with_pivots(self, model: Model) -> list[Constraint]:
         """Constraints of a model, those of points solved for the same unknowns as at first.
 
-        Of weights that are equal but for round-off, each mesh would choose others, and what is
+        Where weights are equal but for round-off, each mesh would choose others, and what is
         eliminated decides on a hierarchy.
         """
         known = self.family.pivots
