@@ -255,11 +255,11 @@ def answer(page: Page, rows: list[Record]) -> None:
     page.answer(
         "Is it worth while to deflate rigid motions?",
         f"Beside multigrid it saves {saved(alike)} of {alike['iterations without']} iterations of "
-        f"bodies alike, {saved(most)} of {most['iterations without']} of bodies "
+        f"equally stiff bodies, {saved(most)} of {most['iterations without']} of bodies "
         f"{most['ratio']:,.0f} times as stiff as their neighbours.",
         [
             page.value(
-                "iterations with deflation, bodies alike",
+                "iterations with deflation, equal stiffness",
                 alike["iterations with"],
                 beside=alike["iterations without"],
                 by="without",

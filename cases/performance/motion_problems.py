@@ -220,7 +220,7 @@ def elongations(problem: Problem, q: Floats) -> Floats:
 def reference(problem: Problem) -> Floats:
     """Elongations at the records, by SciPy's explicit method of eighth order to twelve digits.
 
-    Its own rates, from matrices and cosines; it begins anew at each kink of the load.
+    Its own rates, from matrices and cosines; it begins again at each kink of the load.
     """
     e, n = problem.equations, len(problem.equations.mass)
     inverse = np.linalg.inv(e.mass)

@@ -339,7 +339,7 @@ def show_method(page: Page, duration: float, repeats: int) -> None:
         "stand where no other is named."
     )
     page.text(
-        "Times of this project have the exponentials of matrices in them, which are made anew in "
+        "Times of this project have the exponentials of matrices in them, which are made again in "
         "each run; those of Exudyn and ROSS begin with their solver, when the model is assembled."
     )
     page.text(

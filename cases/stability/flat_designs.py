@@ -1,4 +1,4 @@
-"""Searches whose answer means little: flat objectives, limits that hardly act, limits alike."""
+"""Searches whose answer means little: flat masses, limits that hardly act, limits nearly equal."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ FLAT = "Error of the bore of an ever shorter section; shaded: below 1 % of the r
 BY, PRICE = "limit from where the ranges end, relative", "error of the price"
 IDLE = "Price of a limit where ranges end just beyond or before it; shaded: below 1 %"
 APART, SHARE = "limits apart, relative", "share of the price that the idle limit takes"
-ALIKE = "Prices of two limits that pull alike"
+ALIKE = "Prices of two limits that pull the same way"
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def run(run: Run, page: Page) -> None:
         shortest = vanishing_section(page, 1.0 if run.quick else 3.0)
     with run.step("a limit that hardly acts"):
         idle = idle_limit(page, 1.0 if run.quick else 4.0)
-    with run.step("two limits alike"):
+    with run.step("two limits nearly equal"):
         alike = limits_alike(page, 1.0 if run.quick else 4.0)
     page.answer(
         "When does the least design of a search mean little?",
@@ -94,7 +94,7 @@ def run(run: Run, page: Page) -> None:
         [
             page.value("least share of the mass with which a value is found", shortest),
             page.value("distance of a limit from ends of ranges, for its price to count", idle),
-            page.value("distance of two limits alike, for prices of their own", alike),
+            page.value("distance of two limits, for prices of their own", alike),
         ],
         hero=FLAT,
         cautions=[
@@ -251,7 +251,7 @@ def limits_alike(page: Page, each: float) -> float:
         source="two limits that are the same function",
     )
     page.limit(
-        "prices of limits that pull alike",
+        "prices of limits that pull the same way",
         "distance of the limits, relative",
         low=max(told),
         criterion="each limit has a price of its own",
@@ -259,7 +259,7 @@ def limits_alike(page: Page, each: float) -> float:
         program="names the limits, and says that their prices are open",
         remedy="leave out the one that follows from the other",
     )
-    page.section("Limits alike")
+    page.section("Limits nearly equal")
     page.table(ALIKE, rows)
     return max(told)
 

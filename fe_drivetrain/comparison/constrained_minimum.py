@@ -196,8 +196,8 @@ def multiplier_ranges(
 ) -> Floats:
     """Least and largest sum of the multipliers of each group of limits that balance a minimum.
 
-    Where several limits meet and pull alike, many multipliers balance the gradient as well: what
-    one limit costs alone is then open (degenerate minima: Nocedal and Wright 2006, 12.2).
+    Where several limits meet and pull the same way, many multipliers balance the gradient as well:
+    what one limit costs alone is then open (degenerate minima: Nocedal and Wright 2006, 12.2).
 
     Parameters
     ----------

@@ -338,9 +338,9 @@ def _corrected(one: _Candidate, tolerance: float, report: Callable[[str], object
         )
         before, gain = minimum.at, np.inf
         now = correction(problem.corrected_by, before, better, cheap)
-        # slopes of the ratio anew far from where they were found, and where the search would end
-        for anew in (True,) if now.is_far else (False, True):
-            now = with_slopes(now, partial(_ratios, trials, report)) if anew else now
+        # slopes of the ratio again far from where they were found, and where the search would end
+        for again in (True,) if now.is_far else (False, True):
+            now = with_slopes(now, partial(_ratios, trials, report)) if again else now
             problem = replace(problem, corrected_by=now)
             values = problem.functions(before)
             (minimum,) = minima_of(problem, [before], _named(report, "corrected: "), path)

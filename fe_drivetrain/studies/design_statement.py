@@ -141,8 +141,8 @@ def state_gradients(found: Findings, problem: Problem, minimum: Minimum) -> None
     names = [str(limit) for limit, far in zip(problem.limits, wide, strict=True) if far]
     if len(names) > 1:
         found.note(
-            f"{' and '.join(names)} are met together and pull alike: what one of them costs alone "
-            "is open, only what all cost together is known."
+            f"{' and '.join(names)} are met together and pull the same way: what one of them costs "
+            "alone is open, only what all cost together is known."
         )
     elif names:
         found.note(

@@ -166,7 +166,7 @@ class Neighbours:
         return model, cached_response(model, cache=cache)
 
     def __getstate__(self) -> dict[str, object]:
-        """Settings alone: what another process does, it begins anew."""
+        """Settings alone: what another process does, it begins from nothing."""
         return {"reuse": self.reuse, "steps": [], "meshes": self.meshes, "_families": []}
 
     def note(self, **changes: object) -> None:
