@@ -1,4 +1,6 @@
-"""Names of components, in the order in which every array has them, and standard gravity."""
+"""Names of components, in the order in which every array has them, and constants of all rooms."""
+
+from math import pi
 
 #: Forces [N] and moments [N m] at a point; `MOTIONS` do work on them one by one.
 FORCES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
@@ -12,6 +14,9 @@ STRESSES = ("xx", "yy", "zz", "xy", "yz", "zx")
 #: Of stress in a harmonic n of a body of revolution: the first four vary along the circumference as
 #: cos(n t), the last two as sin(n t).
 CYLINDRICAL_STRESSES = ("xx", "rr", "tt", "xr", "xt", "rt")
+
+#: Revolutions a minute at 1 rad/s.
+RPM = 30.0 / pi
 
 #: Standard gravity [m/s^2] (CGPM 1901).
 GRAVITY = 9.80665

@@ -24,6 +24,7 @@ from fe_drivetrain.bearing_life.coupled.of_scene import scene_body
 from fe_drivetrain.bearing_life.life.roller_damage import damage_of_history
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.near_words import did_you_mean
 from fe_drivetrain.drivetrain_file.bearing_unit import BearingUnit
@@ -49,7 +50,6 @@ from fe_drivetrain.studies.rolling_bearings import OneBearing, bearings_of
 from fe_drivetrain.studies.turning_advice import finest_modes
 from fe_drivetrain.studies.turning_model import TurningModel
 from fe_drivetrain.studies.turning_quantities import turning_quantity
-from fe_drivetrain.studies.unused import RPM
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads
 from fe_drivetrain.turbine_loads.hub_loads.recorded import read_recorded, recorded_files
 

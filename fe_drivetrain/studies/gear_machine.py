@@ -20,6 +20,7 @@ from fe_drivetrain.dynamics.bodies.roller_matrices import with_matrices
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_stresses import Conditions
 from fe_drivetrain.studies.mode_levels import WORDS, named_rung
+from fe_drivetrain.studies.rotor_speeds import rated_speed
 
 NOTHING: Mapping[str, str] = MappingProxyType({})
 RPM = 0.10471975511965977
@@ -92,10 +93,9 @@ def gear_train(
     if not drivetrain.gearbox.stages:
         raise InputError(f"{drivetrain.title!r} has no gears: give gearbox.stages")
     machine, operation = machine_of(drivetrain), drivetrain.operation
-    speed, oil = None, None
-    if operation is not None:
-        speed = None if operation.rotor_speed is None else operation.rotor_speed[1]
-        oil = None if operation.lubricant is None else 1e-6 * float(operation.lubricant.split()[1])
+    speed, oil = rated_speed(drivetrain), None
+    if operation is not None and operation.lubricant is not None:
+        oil = 1e-6 * float(operation.lubricant.split()[1])
     if options.rotor_speed_rpm:
         speed = options.rotor_speed_rpm * RPM
     if options.lubricant is not None:

@@ -19,6 +19,7 @@ from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats, chunks
 from fe_drivetrain.common.cache import user_cache
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.provenance import program_hash
@@ -30,7 +31,7 @@ from fe_drivetrain.studies.life_assumptions import effects, what_ifs
 from fe_drivetrain.studies.life_inside import inside_effects
 from fe_drivetrain.studies.life_series import has_series, series_values
 from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
-from fe_drivetrain.studies.unused import RPM, own_speeds, require_samples
+from fe_drivetrain.studies.unused import own_speeds, require_samples
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
 from fe_drivetrain.turbine_loads.hub_loads.histories import MIN_SAMPLES
 from fe_drivetrain.turbine_loads.hub_loads.point_loads import PointLoads

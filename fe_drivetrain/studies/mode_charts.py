@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.arrays import rounded
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.procedure import Excitation, Meeting
 from fe_drivetrain.report.charts import chart, crosses, trace
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.studies.mode_record import TORSIONAL, Modes
-from fe_drivetrain.studies.unused import RPM
 
 CAMPBELL = (
     "Campbell diagram: natural frequencies over the speed of the rotor, excitations, and where "

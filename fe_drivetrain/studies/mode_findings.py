@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.dynamics import Level, Machine
 from fe_drivetrain.procedure import RESONANCE, Meeting
 from fe_drivetrain.procedure.resonance import NEAR
@@ -16,7 +17,6 @@ from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.mode_levels import FIRST
 from fe_drivetrain.studies.mode_record import Modes
 from fe_drivetrain.studies.mode_register import defect_rows, register_rows
-from fe_drivetrain.studies.unused import RPM
 
 MARGIN = "least margin of an excited frequency"
 """As projects of validation name it."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.procedure import Excitation, Meeting
 from fe_drivetrain.procedure.resonance import NEAR
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.mode_record import Modes
-from fe_drivetrain.studies.unused import RPM
 
 SPEEDS = 121
 """Speeds of the range at which margins are drawn."""

@@ -21,6 +21,7 @@ from fe_drivetrain.bearing_life.life.roller_damage import Damage
 from fe_drivetrain.bearing_life.life.roller_models import balanced, rigid_rings
 from fe_drivetrain.bearing_life.life.standard_damage import StandardDamage, standard_damage
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.dynamics.bodies.mesh_loads import mesh_springs
 from fe_drivetrain.dynamics.time.bearing_forces import BearingForces, bearing_forces
@@ -30,8 +31,6 @@ from fe_drivetrain.dynamics.time.running import Running
 from fe_drivetrain.studies.gear_options import GearOptions
 from fe_drivetrain.studies.gear_spectra import TorqueSpectrum, merged, spectrum_of
 from fe_drivetrain.turbine_loads.hub_loads.drive_history import DriveHistory
-
-RPM = 30.0 / np.pi
 
 ROLLER_STEP = 5e-3
 """Time from one equilibrium of rollers to the next, where steps are shorter [s]."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from math import inf, pi
+from math import inf
 
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 
@@ -16,8 +17,6 @@ operation, and gears and bearings of a machine bear no more."""
 
 _LARGEST = 100.0
 """Speed of a rotor whose rated one is not stated [rad/s]: a file may state as much."""
-
-_RPM = 30.0 / pi
 
 
 def rated_speed(drivetrain: Drivetrain) -> float | None:
@@ -54,6 +53,6 @@ def check_speed(name: str, speed: float, rated: float | None, times: float, fix:
         return
     of = f", {times:g} times the rated speed" if rated is not None else ""
     raise InputError(
-        f"{name} has a speed of {speed * _RPM:.4g} 1/min but must have one from 0 to "
-        f"{most * _RPM:.4g} 1/min{of}: {fix}"
+        f"{name} has a speed of {speed * RPM:.4g} 1/min but must have one from 0 to "
+        f"{most * RPM:.4g} 1/min{of}: {fix}"
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_drivetrain.bearing_life.coupled.reaction_paths import damage_of_forces
 from fe_drivetrain.bearing_life.life.roller_damage import Damage
-from fe_drivetrain.common.components import GRAVITY
+from fe_drivetrain.common.components import GRAVITY, RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.steps import Steps
@@ -32,7 +32,6 @@ from fe_drivetrain.studies.gear_ratings import prepared
 from fe_drivetrain.studies.gear_stresses import MeshStresses
 from fe_drivetrain.studies.part_bearings import counted_parts
 from fe_drivetrain.studies.part_damage import PartUse
-from fe_drivetrain.studies.part_loads import RPM
 from fe_drivetrain.studies.rated_gears import GearRating
 from fe_drivetrain.studies.tooth_damage import gear_damage
 from fe_drivetrain.studies.transient_events import event_at, rated_of

@@ -10,15 +10,13 @@ import numpy as np
 
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.common.errors import InputError
 
 if TYPE_CHECKING:
     from fe_drivetrain.bearing.catalogue import Named
     from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
     from fe_drivetrain.studies.rolling_bearings import Choices, OneBearing
-
-RPM = 30.0 / np.pi
-"""Revolutions a minute in a radian per second."""
 
 
 def own_speeds(rotor_speed: Floats | None) -> Floats:

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.arrays import rounded
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.dynamics.whirl.modes import BACKWARD, FORWARD, STRAIGHT, WhirlChart, sense_word
 from fe_drivetrain.report.charts import chart, crosses, marked, trace
 from fe_drivetrain.report.results import Chart
-from fe_drivetrain.studies.unused import RPM
 from fe_drivetrain.studies.whirl_record import ShaftWhirl
 
 CAMPBELL = (

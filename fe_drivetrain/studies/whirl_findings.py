@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.drivetrain_file.whirl_data import WhirlData
 from fe_drivetrain.dynamics import Machine
 from fe_drivetrain.dynamics.whirl.modes import sense_word
@@ -15,7 +16,6 @@ from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.mode_findings import SMALL
-from fe_drivetrain.studies.unused import RPM
 from fe_drivetrain.studies.whirl_record import ShaftWhirl, is_excited
 from fe_drivetrain.studies.whirl_rollers import RollerTables
 
