@@ -7,7 +7,7 @@ from math import isfinite
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record
-from fe_drivetrain.shafts.fidelity.adviser import LevelResult
+from fe_drivetrain.shafts.fidelity.advice import LevelResult
 from fe_drivetrain.studies import AdviseResult
 
 MOST_OTHERS = 2

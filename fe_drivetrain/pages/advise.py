@@ -8,7 +8,7 @@ from fe_drivetrain.pages.drivetrain_sketch import drivetrain_sketch
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
-from fe_drivetrain.shafts.fidelity.adviser import LevelResult
+from fe_drivetrain.shafts.fidelity.advice import LevelResult
 from fe_drivetrain.studies.level_advice import AdviseResult, effects_level_title
 
 QUICK_BAND = "A quick run's mesh is coarser than what was asked for: its band is not judged."

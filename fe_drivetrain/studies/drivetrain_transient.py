@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf, nan
 from pathlib import Path
 from typing import Any
@@ -13,26 +13,24 @@ from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.dynamics.bodies.advice import RUNGS, Rung
+from fe_drivetrain.dynamics.bodies.advice import Rung
 from fe_drivetrain.dynamics.bodies.catalogue_seats import main_names
-from fe_drivetrain.dynamics.bodies.condensed_rungs import Rungs
 from fe_drivetrain.dynamics.bodies.damping_ratios import first_mode_damping
 from fe_drivetrain.dynamics.bodies.equations import equations_of_motion, spring_laws, steady
 from fe_drivetrain.dynamics.bodies.levels import Level
-from fe_drivetrain.dynamics.bodies.machine import Machine, machine_of
+from fe_drivetrain.dynamics.bodies.machine import machine_of
 from fe_drivetrain.dynamics.bodies.roller_matrices import asked_rungs
 from fe_drivetrain.dynamics.time.integration import integrate
 from fe_drivetrain.dynamics.time.machine_channels import Kind
-from fe_drivetrain.procedure.drivetrain_events import EVENTS, BaseMoves, Event, event_of
+from fe_drivetrain.procedure.drivetrain_events import EVENTS, BaseMoves, event_of
 from fe_drivetrain.procedure.travelling_planets import (
     STAND,
-    TRAVEL,
     travels,
 )
 from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.studies.machine_description import housings_in_words
-from fe_drivetrain.studies.mode_levels import WORDS, named_rung
+from fe_drivetrain.studies.mode_levels import WORDS
 from fe_drivetrain.studies.part_damage import PartUse
 from fe_drivetrain.studies.stated_levels import Errors, state_level_errors
 from fe_drivetrain.studies.torque_limits import note_limits, torque_limits
@@ -70,17 +68,16 @@ from fe_drivetrain.studies.transient_loads import design_loads
 from fe_drivetrain.studies.transient_parts import (
     DAMAGE,
     DamageOptions,
-    PartQuestion,
     history_damage_rows,
     part_question,
     state_parts,
 )
+from fe_drivetrain.studies.transient_question import TransientQuestion, require_span
 from fe_drivetrain.studies.transient_result import TransientResult
 from fe_drivetrain.studies.transient_runs import (
     Extreme,
     LevelRun,
     Prepared,
-    Rated,
     Samples,
     telling_torque,
     with_bands,
@@ -106,9 +103,6 @@ SLOW = 2e-3
 
 STEPS = (1e-7, 1.0)
 """Shortest and longest step of integration [s]."""
-
-LONGEST = 3600.0
-"""Longest event [s]."""
 
 WINDOW = 60.0
 """Part of the first history in which levels and steps are compared [s]."""
@@ -215,7 +209,7 @@ def transient(
     named = None if level is None else WORDS.get(level)
     asking = {"condensed": condensed, "matrices": matrices, "rollers": rollers}
     rungs = asked_rungs(drivetrain, machine, **asking, steps=steps)
-    asked = _Asked(
+    asked = TransientQuestion(
         drivetrain,
         machine,
         event,
@@ -236,65 +230,10 @@ def transient(
     return _happened(asked, steps)
 
 
-@dataclass(frozen=True)
-class _Asked:
-    """What is asked of a drivetrain."""
-
-    drivetrain: Drivetrain
-    machine: Machine
-    event: str
-    values: dict[str, float | str]
-    rated: Rated
-    rungs: Rungs
-    level: str | None
-    asking: dict[str, bool]
-    quantity: Kind
-    tolerance: float
-    duration: float | None
-    step: float | None
-    travels: bool
-    parts: PartQuestion
-
-    def levels(self, possible: Sequence[Level]) -> list[Rung]:
-        """Levels to run, of those at which the event can happen."""
-        every = self.rungs.rungs
-        if self.level is None:
-            found = [rung for rung in every if rung.level in possible]
-            if not found:
-                raise InputError(
-                    f"event {self.event} needs all motions of {self.machine.title!r}, whose file "
-                    f"does not state {', '.join(self.machine.not_given)}: add it"
-                )
-            return found
-        if self.level in WORDS and WORDS[self.level] not in possible:
-            words = [word for word, one in WORDS.items() if one in possible]
-            having = " with its values" if self.values else ""
-            raise InputError(
-                f"event {self.event}{having} does not happen at the level {self.level}: choose "
-                f"one of {', '.join(words)}"
-            )
-        return [named_rung(self.level, every, self.machine)]
-
-    def plain(self) -> dict[str, Any]:
-        """All of it as plain data."""
-        return {
-            "event": self.event,
-            "values": self.values,
-            "rated": self.rated.plain(),
-            "level": self.level,
-            **self.asking,
-            "quantity": self.quantity,
-            "tolerance": self.tolerance,
-            "duration": self.duration,
-            "step": self.step,
-            "planets": TRAVEL if self.travels else STAND,
-        }
-
-
-def _happened(asked: _Asked, steps: Steps) -> TransientResult:
+def _happened(asked: TransientQuestion, steps: Steps) -> TransientResult:
     """An event, at all levels that were asked for."""
     event = event_of(asked.event, asked.values)
-    duration = _duration(asked, event)
+    duration = asked.lasts(event)
 
     made: dict[str, Prepared] = {}
 
@@ -318,32 +257,15 @@ def _happened(asked: _Asked, steps: Steps) -> TransientResult:
     )
 
 
-def _duration(asked: _Asked, event: Event) -> float:
-    if asked.duration is None:
-        return event.lasts(asked.rated.running(asked.machine, RUNGS[0]))
-    _require_span("duration", asked.duration, (0.0, LONGEST))
-    return asked.duration
-
-
-def _require_span(name: str, value: float | None, within: tuple[float, float]) -> None:
-    """Refuse a time that is out of its range, whose lower end is 0 s where that is left out."""
-    low, high = within
-    if value is None or (low <= value <= high and value > 0.0):
-        return
-    least = f"from {low:g}" if low else "above 0 s"
-    most = "" if high == inf else f" to {high:g} s" if low else f" and at most {high:g} s"
-    raise InputError(f"{argument(name)} is {value:g} s but must be {least}{most}: change it")
-
-
 def _compared(
-    asked: _Asked,
+    asked: TransientQuestion,
     levels: Sequence[Rung],
     at: Callable[[Rung], Callable[[float | None], LevelRun]],
     step: float | None,
     steps: Steps,
 ) -> tuple[list[LevelRun], int]:
     """Runs at all levels, the chosen and the finest with their bands; number of the chosen one."""
-    _require_span("step", step, STEPS)
+    require_span("step", step, STEPS)
     with steps.step("compiled loops"):
         _load_loops()
     runs, again = [], []
@@ -369,7 +291,11 @@ def _load_loops() -> None:
 
 
 def _operated(
-    asked: _Asked, files: Sequence[Path], options: OperationOptions, resume: bool, steps: Steps
+    asked: TransientQuestion,
+    files: Sequence[Path],
+    options: OperationOptions,
+    resume: bool,
+    steps: Steps,
 ) -> TransientResult:
     """Operation under histories, or on a base that they move, one by one."""
     if not files:
@@ -381,8 +307,8 @@ def _operated(
         step=options.step if asked.step is None else asked.step,
         until=options.until if asked.duration is None else asked.duration,
     )
-    _require_span("duration", options.until, (0.0, inf))
-    _require_span("step", options.step, STEPS)
+    require_span("duration", options.until, (0.0, inf))
+    require_span("step", options.step, STEPS)
     first = options.sampled(files[0])
     if asked.step is None:
         options = replace(options, step=min(options.step, spacing(first)))
@@ -442,7 +368,7 @@ def _operated(
     return _result(asked, found, steps, runs, number, extremes, samples, of_files, more, None, use)
 
 
-def _findings(asked: _Asked) -> Findings:
+def _findings(asked: TransientQuestion) -> Findings:
     found = Findings()
     found.seed = None
     found.about(asked.drivetrain)
@@ -455,7 +381,7 @@ def _findings(asked: _Asked) -> Findings:
 
 
 def _result(
-    asked: _Asked,
+    asked: TransientQuestion,
     found: Findings,
     steps: Steps,
     runs: Sequence[LevelRun],

@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.drivetrain_file.scene import Spread
-from fe_drivetrain.shafts.fidelity.adviser import Advice
+from fe_drivetrain.shafts.fidelity.advice import Advice
 from fe_drivetrain.shafts.fidelity.quantity import Reported
 from fe_drivetrain.shafts.uncertainty.input_study import ModelError, Study
 from fe_drivetrain.shafts.uncertainty.numbers import (

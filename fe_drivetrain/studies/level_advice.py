@@ -21,7 +21,7 @@ from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.shafts.fidelity.ablation import Effect, effects
-from fe_drivetrain.shafts.fidelity.adviser import Advice, LevelResult
+from fe_drivetrain.shafts.fidelity.advice import Advice, LevelResult
 from fe_drivetrain.shafts.fidelity.adviser import advise as run_levels
 from fe_drivetrain.shafts.fidelity.quantity import (
     ERROR_AGAINST_LAST,

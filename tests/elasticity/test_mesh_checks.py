@@ -11,7 +11,8 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.reading import change_scene, library_scene
 from fe_drivetrain.elasticity.mesh.checks import FLATTEST, find_faults, flatness, refuse_unsound
 from fe_drivetrain.elasticity.mesh.shared_facets import facet_keys
-from fe_drivetrain.shafts.response.model import build_model, mesh_scene, needed_faces
+from fe_drivetrain.shafts.response.conditions import needed_faces
+from fe_drivetrain.shafts.response.model import build_model, mesh_scene
 
 
 @pytest.fixture(scope="module")

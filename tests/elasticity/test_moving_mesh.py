@@ -8,7 +8,8 @@ from fe_drivetrain.drivetrain_file.reading import change_scene
 from fe_drivetrain.elasticity.mesh.facets import volume_weights
 from fe_drivetrain.elasticity.mesh.moving import MovableMesh, shapes_of
 from fe_drivetrain.foreign.assembly import solids_of_unit
-from fe_drivetrain.shafts.response.model import build_model, joint_pairs, mesh_scene
+from fe_drivetrain.shafts.response.conditions import joint_pairs
+from fe_drivetrain.shafts.response.model import build_model, mesh_scene
 from fe_drivetrain.shafts.response.neighbours import parts_of
 
 UNIT = "bearing_units.main_bearing"

@@ -15,7 +15,7 @@ from fe_drivetrain.plots.figures import (
     stiffness_map,
 )
 from fe_drivetrain.plots.style import PALETTE
-from fe_drivetrain.shafts.fidelity.adviser import Advice, LevelResult
+from fe_drivetrain.shafts.fidelity.advice import Advice, LevelResult
 from fe_drivetrain.shafts.fidelity.ladder import Cost, LevelModel
 from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.shafts.response.unit_loads import Response

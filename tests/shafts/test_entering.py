@@ -26,10 +26,10 @@ from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.solve.solvers import Diagnostics
 from fe_drivetrain.procedure.levels import level_loads
 from fe_drivetrain.report.results import Text, read_results
-from fe_drivetrain.shafts.fidelity.adviser import Quantity
 from fe_drivetrain.shafts.fidelity.ladder import LevelModel, shaft_level
 from fe_drivetrain.shafts.fidelity.over_loads import reaction_history
 from fe_drivetrain.shafts.fidelity.quantities import numbers
+from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.shafts.response.entering import Factors, entering, joined
 from fe_drivetrain.shafts.response.unit_loads import Response
 from fe_drivetrain.studies.load_reactions import scene_reactions

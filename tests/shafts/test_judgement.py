@@ -9,7 +9,8 @@ from fe_drivetrain.command_line.settings import parse_tolerance
 from fe_drivetrain.drivetrain_file.reading import change_scene, library_scene
 from fe_drivetrain.drivetrain_file.scene import Scene, coarser_scene
 from fe_drivetrain.geometry import MeshSizes
-from fe_drivetrain.shafts.fidelity.adviser import Advice, LevelResult, advise
+from fe_drivetrain.shafts.fidelity.advice import Advice, LevelResult
+from fe_drivetrain.shafts.fidelity.adviser import advise
 from fe_drivetrain.shafts.fidelity.assembly_bands import finer_mesh
 from fe_drivetrain.shafts.fidelity.judgement import Judged, judge_levels
 from fe_drivetrain.shafts.fidelity.ladder import Cost, LevelModel

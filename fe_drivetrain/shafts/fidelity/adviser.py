@@ -9,194 +9,34 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
-from fe_drivetrain.common.components import FORCES, MOTIONS
+from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.common.progress import silent
-from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.elasticity.mesh.measures import mean_size
-from fe_drivetrain.geometry import MeshSizes
-from fe_drivetrain.plots.figures import error_against_time
-from fe_drivetrain.shafts.fidelity.assembly_bands import (
-    COARSER,
-    AssemblyBand,
-    finer_mesh,
-    motion_error,
-    reaction_error,
-)
+from fe_drivetrain.shafts.fidelity.advice import Advice, LevelResult, relative_difference
+from fe_drivetrain.shafts.fidelity.assembly_bands import AssemblyBand
+from fe_drivetrain.shafts.fidelity.assembly_series import banded_assembly
 from fe_drivetrain.shafts.fidelity.bearing_units import UnitSolid
-from fe_drivetrain.shafts.fidelity.change_bands import OnMeshes, OnSprings
-from fe_drivetrain.shafts.fidelity.judgement import SLIGHT, is_within
+from fe_drivetrain.shafts.fidelity.change_bands import OnSprings
+from fe_drivetrain.shafts.fidelity.judgement import is_within
 from fe_drivetrain.shafts.fidelity.ladder import (
     TITLES,
     LevelModel,
     housing_springs,
     shaft_level,
-    solved_assembly,
     statics_level,
 )
 from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.shafts.fidelity.shafts import condensed_shaft
-from fe_drivetrain.shafts.response.model import Model
-from fe_drivetrain.shafts.response.neighbours import EVERYTHING, Neighbours, Reuse
-from fe_drivetrain.shafts.response.unit_loads import Response
 
 #: Nothing is taken from the cache: times are part of the answer.
 UNCACHED = Cache(None)
-
-
-@dataclass(frozen=True)
-class LevelResult:
-    """Result of one model on the ladder, and its difference to the top.
-
-    Attributes
-    ----------
-    model : LevelModel
-        The model that was solved.
-    values : Floats
-        Values of the quantity.
-    seconds : float
-        Wall time of all that its value needs; what its estimate takes comes on top.
-    waited : float
-        Wall time from the beginning to its estimate: what a user waits for this answer.
-    estimate : float
-        Error expected before any more expensive model is run, relative: 0 where statics decides;
-        half the range of its two bounds and the change from beam to meridian where housings are
-        springs; the band of the mesh where it is the assembly; NaN where it has none.
-    error : float
-        Difference to the last result, relative.
-    band : AssemblyBand or None
-        What the estimate of the assembly rests on.
-    """
-
-    model: LevelModel
-    values: Floats
-    seconds: float
-    estimate: float
-    waited: float = 0.0
-    error: float = float("nan")
-    band: AssemblyBand | None = None
-
-    __repr__ = short_repr
-
-
-@dataclass(frozen=True)
-class Advice:
-    """The ladder as far as it was run.
-
-    Attributes
-    ----------
-    quantity, tolerance : Quantity, float
-        What was asked, the tolerance relative.
-    results : Sequence[LevelResult]
-        From cheap to expensive.
-    chosen : int or None
-        Index of the cheapest result that is within the tolerance; None where none is.
-    springs : Mapping[str, Floats]
-        Stiffness of the bearing units, faces held in shape, where the ladder went so far.
-    share : float
-        Size of a reaction over that of the largest of its kind (force or moment); 1 of a stiffness.
-    sizes : MeshSizes or None
-        Element sizes of the assembly.
-    """
-
-    quantity: Quantity
-    tolerance: float
-    results: Sequence[LevelResult]
-    chosen: int | None
-    springs: Mapping[str, Floats] = field(default_factory=dict)
-    share: float = 1.0
-    sizes: MeshSizes | None = None
-
-    __repr__ = short_repr
-
-    @property
-    def top(self) -> LevelResult:
-        """The most expensive model that was run."""
-        return self.results[-1]
-
-    def step(self, number: int) -> float:
-        """Difference of a result to the next one, relative to that; NaN of the last."""
-        if number == len(self.results) - 1:
-            return float("nan")
-        return _difference(self.results[number].values, self.results[number + 1].values)
-
-    def plot(self) -> Any:
-        """Error of each level over its time, as a Plotly figure; the chosen one drawn larger.
-
-        Returns
-        -------
-        plotly.graph_objects.Figure
-            See `fe_drivetrain.plots.error_against_time`; of the last level its estimated own error.
-        """
-        name = self.quantity.name
-        return error_against_time(*self.ladder, self.tolerance, self.chosen, name, self.bands)
-
-    @property
-    def bands(self) -> list[float]:
-        """Estimated own error of each level but the last, whose error that is already."""
-        return [*(result.estimate for result in self.results[:-1]), 0.0]
-
-    @property
-    def ladder(self) -> tuple[list[str], list[float], list[float]]:
-        """Name, time [s] and relative error of each level; of the last one its own error."""
-        return (
-            [f"level {result.model.level}, {result.model.title}" for result in self.results],
-            [result.seconds for result in self.results],
-            [*(result.error for result in self.results[:-1]), self.top.estimate],
-        )
-
-    def sentence(self) -> str:
-        """The answer."""
-        return self._answer() + self._slight()
-
-    def _slight(self) -> str:
-        """Note on a reaction by which a study would judge no level."""
-        if not self.share < SLIGHT:
-            return ""
-        kind = "force" if self.quantity.unit == "N" else "moment"
-        return (
-            f" {self.quantity.name} is {100 * self.share:.2g} % of the largest {kind}: a study "
-            f"judges no level by less than {100 * SLIGHT:g} %."
-        )
-
-    def _answer(self) -> str:
-        share = f"{100 * self.tolerance:g} %"
-        if self.chosen is None:
-            return (
-                f"{self.quantity.name}: no level is known to be within {share}; the finest, "
-                f"{self.top.model.title}, has a band of {100 * self.top.estimate:.2g} %, and "
-                f"{share} or less is asked: {finer_mesh(self.sizes, self.top.estimate)}"
-                f"{self._of_band()}"
-            )
-        result = self.results[self.chosen]
-        if self.chosen == len(self.results) - 1:
-            return (
-                f"{self.quantity.name} within {share} needs level {result.model.level}, "
-                f"{result.model.title}: {_expected(result)}, found in {result.waited:.2g} s"
-                f"{self._of_band()}"
-            )
-        ratio = self.top.seconds / result.seconds
-        faster = f"{ratio:.3g} times faster" if ratio > 1 else f"{1 / ratio:.3g} times slower"
-        return (
-            f"{self.quantity.name} within {share}: level {result.model.level}, "
-            f"{result.model.title}, is enough: {100 * result.error:.2g} % from level "
-            f"{self.top.model.level}, {self.top.model.title} ({_expected(self.top)}), and {faster} "
-            f"by itself; found in {self.top.waited:.2g} s"
-            f"{self._of_band()}"
-        )
-
-    def _of_band(self) -> str:
-        band = self.top.band
-        return "." if band is None else f". On the assembly's band: {band.sentence()}."
 
 
 def advise(
@@ -330,147 +170,6 @@ def band_on_springs(values: Floats, bound: Floats, cheaper: Floats) -> float:
     return OnSprings(values, bound, cheaper).half_width / float(np.linalg.norm(values))
 
 
-def banded_assembly(
-    scene: Scene,
-    quantities: Sequence[Quantity],
-    report: Callable[[str], object] = silent,
-    cache: Cache | None = None,
-) -> tuple[LevelModel, float, list[AssemblyBand]]:
-    """Solve the assembly, and two on coarser meshes that give its values their bands.
-
-    For the arguments see `assembly_series`.
-
-    Returns
-    -------
-    LevelModel
-        The assembly on the finest mesh.
-    float
-        Wall time of that alone [s]; of reading it, where it was kept.
-    list[AssemblyBand]
-        Band of each quantity.
-    """
-    level, seconds, series = assembly_series(scene, quantities, report, cache)
-    return level, seconds, [of.band for of in series]
-
-
-def assembly_series(
-    scene: Scene,
-    quantities: Sequence[Quantity],
-    report: Callable[[str], object] = silent,
-    cache: Cache | None = None,
-    neighbours: Sequence[Neighbours] | None = None,
-) -> tuple[LevelModel, float, list[OnMeshes]]:
-    """Solve the assembly on its mesh and on two coarser ones, and estimate its errors.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene; its mesh sizes are the finest.
-    quantities : Sequence[Quantity]
-        What is asked for.
-    report : callable
-        Called with what is being done.
-    cache : Cache or None
-        Where solutions may come from; the user's if not given.
-    neighbours : Sequence[Neighbours] or None
-        What designs before have left of each mesh, the coarsest first, see `mesh_neighbours`.
-
-    Returns
-    -------
-    LevelModel
-        The assembly on the finest mesh.
-    float
-        Wall time of that alone [s]; of reading it, where it was kept.
-    list[OnMeshes]
-        Each quantity on all meshes.
-    """
-    length = scene.shaft.length
-    sizes, levels, factors = [], [], []
-    near = [None] * (len(COARSER) + 1) if neighbours is None else neighbours
-    for number, factor in enumerate(COARSER, 1):
-        report(f"level 4: assembly of solids ({number} of {len(COARSER) + 1})")
-        coarser = scene.model_copy(update={"mesh": scene.mesh.scaled(factor)})
-        try:
-            level, coarse, _ = solved_assembly(coarser, cache, near[number - 1])
-        except InputError:  # too coarse for a wall
-            continue
-        sizes.append(mean_size(coarse.mesh))
-        levels.append(level)
-        factors.append(factor)
-    report(f"level 4: assembly of solids ({len(COARSER) + 1} of {len(COARSER) + 1})")
-    start = time.perf_counter()
-    level, model, response = solved_assembly(scene, cache, near[-1])
-    seconds = time.perf_counter() - start
-    sizes.append(mean_size(model.mesh))
-    levels.append(level)
-    factors.append(1.0)
-    report("level 4: errors estimated from recovered stresses")
-    errors = recovered_errors(quantities, model, response, length)
-    series = [
-        OnMeshes(
-            tuple(sizes),
-            tuple(quantity.of(level, length) for level in levels),
-            error,
-            tuple(factors),
-        )
-        for quantity, error in zip(quantities, errors, strict=True)
-    ]
-    return level, seconds, series
-
-
-def mesh_neighbours(reuse: Reuse = EVERYTHING) -> tuple[Neighbours, ...]:
-    """Nothing yet of the meshes that `assembly_series` solves an assembly on.
-
-    Parameters
-    ----------
-    reuse : Reuse
-        What of a design is used for the next.
-    """
-    return tuple(Neighbours(reuse) for _ in range(len(COARSER) + 1))
-
-
-def recovered_errors(
-    quantities: Sequence[Quantity], model: Model, response: Response, length: float
-) -> list[Floats]:
-    """Errors of the values of an assembly, estimated from recovered stresses.
-
-    What quantities have in common is solved and recovered once.
-
-    Parameters
-    ----------
-    quantities : Sequence[Quantity]
-        What is asked for.
-    model, response : Model, Response
-        The solved assembly.
-    length : float
-        Length of the shaft [m], see `Quantity.of`.
-
-    Returns
-    -------
-    list[Floats]
-        (k,) of each quantity, as its values.
-    """
-    n, found = len(model.loads), dict[int, Floats]()
-    together: dict[tuple[str, bytes], list[int]] = {}
-    for number, quantity in enumerate(quantities):
-        owner = quantity.name.partition(".")[0]
-        loads = b"" if owner == "hub" else quantity.columns(length, n).tobytes()
-        together.setdefault((owner, loads), []).append(number)
-    for (owner, _), numbers in together.items():
-        components = [quantities[k].name.rpartition(".")[2] for k in numbers]
-        if owner == "hub":
-            motions = [MOTIONS.index(c) for c in components]
-            errors = motion_error(model, response, np.eye(n)[:, motions]).diagonal()
-            given = response.motions["hub"].diagonal()[motions]
-            found |= zip(numbers, (errors / given**2)[:, None], strict=True)
-        else:
-            rows = [FORCES.index(c) for c in components]
-            columns = quantities[numbers[0]].columns(length, n)
-            each = reaction_error(model, response, owner, rows, columns)
-            found |= zip(numbers, each, strict=True)
-    return [found[k] for k in range(len(quantities))]
-
-
 def _judged(
     quantity: Quantity,
     tolerance: float,
@@ -486,7 +185,7 @@ def _judged(
             f"quantity {quantity.name!r} is zero at level {top.model.level}{decided} for {of}: "
             "ask for another, or give another load"
         )
-    judged = [replace(r, error=_difference(r.values, top.values)) for r in results]
+    judged = [replace(r, error=relative_difference(r.values, top.values)) for r in results]
     chosen = None
     for number, result in enumerate(judged):
         # the uncertainty of the top counts against all levels below it
@@ -509,14 +208,3 @@ def _share(quantity: Quantity, model: LevelModel, length: float) -> float:
     sizes = [float(np.linalg.norm(other.of(model, length))) for other in others]
     own = float(np.linalg.norm(quantity.of(model, length)))
     return own / max(own, *(size for size in sizes if np.isfinite(size)))
-
-
-def _difference(values: Floats, reference: Floats) -> float:
-    """Norm of the difference of two vectors, relative to the norm of the second."""
-    return float(np.linalg.norm(values - reference) / np.linalg.norm(reference))
-
-
-def _expected(result: LevelResult) -> str:
-    if result.estimate == 0.0:
-        return "decided by statics"
-    return f"± {100 * result.estimate:.2g} %"

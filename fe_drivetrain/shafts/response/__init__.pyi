@@ -7,6 +7,8 @@ from .bearing_stiffness import tilt_by_plane as tilt_by_plane
 from .bearing_stiffness import tilt_stiffness as tilt_stiffness
 from .bearing_stiffness import without_gearbox as without_gearbox
 from .cached import cached_response as cached_response
+from .conditions import joint_pairs as joint_pairs
+from .conditions import needed_faces as needed_faces
 from .entering import Factors as Factors
 from .entering import at_front as at_front
 from .entering import entering as entering
@@ -18,9 +20,7 @@ from .influence_fields import reaction_influences as reaction_influences
 from .model import LOADS as LOADS
 from .model import Model as Model
 from .model import build_model as build_model
-from .model import joint_pairs as joint_pairs
 from .model import mesh_scene as mesh_scene
-from .model import needed_faces as needed_faces
 from .model import scene_loads as scene_loads
 from .neighbours import GROWTH as GROWTH
 from .neighbours import NOTHING as NOTHING

@@ -15,7 +15,8 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.spatial import rigid_motions, wrench_transport
 from fe_drivetrain.elasticity.interfaces.constraints import Elimination, dofs
 from fe_drivetrain.elasticity.operator import kernels
-from fe_drivetrain.shafts.response.model import Model, stood_on
+from fe_drivetrain.shafts.response.conditions import stood_on
+from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.shafts.response.prepared import Prepared, prepared
 
 

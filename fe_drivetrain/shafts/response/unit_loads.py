@@ -15,8 +15,9 @@ from fe_drivetrain.elasticity.interfaces.constraints import dofs
 from fe_drivetrain.elasticity.operator import kernels
 from fe_drivetrain.elasticity.solve.solvers import Diagnostics
 from fe_drivetrain.plots.figures import load_bars
+from fe_drivetrain.shafts.response.conditions import stood_on
 from fe_drivetrain.shafts.response.entering import Loads, entering
-from fe_drivetrain.shafts.response.model import LOADS, Model, stood_on
+from fe_drivetrain.shafts.response.model import LOADS, Model
 from fe_drivetrain.shafts.response.part_forces import part_forces
 from fe_drivetrain.shafts.response.prepared import Prepared, prepared
 

@@ -22,7 +22,8 @@ from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.common.threads import cores
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import Coupling, Scene, Spread
-from fe_drivetrain.shafts.fidelity.adviser import Advice, LevelResult, advise
+from fe_drivetrain.shafts.fidelity.advice import Advice, LevelResult
+from fe_drivetrain.shafts.fidelity.adviser import advise
 from fe_drivetrain.shafts.fidelity.quantities import (
     Number,
     Solved,
