@@ -25,6 +25,7 @@ from fe_drivetrain.bearing_life.life import (
 )
 from fe_drivetrain.cases.references.thesis_beam import BEAM, beam_body, housed_body
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.turbine_loads.histories import Site, site_life
 from fe_drivetrain.turbine_loads.hub_loads import (
     Condition,
@@ -140,7 +141,7 @@ def with_controller(
     for history in made:
         every = round(1.0 / (sets[0].rate * history.history.step))
         loads.append(history.history.loads[::every])
-        speeds.append(np.abs(history.rotor_speed[::every]) * 30.0 / np.pi)
+        speeds.append(np.abs(history.rotor_speed[::every]) * RPM)
     shape = (len(sets), len(SPEEDS), -1)
     return [
         Hub(*both)
@@ -254,7 +255,7 @@ def basic_lives(setup: Setup, deflections: Floats) -> Floats:
 def rotor_speed(rotor: Rotor | None = None) -> Floats:
     """Rotor speed at each mean wind speed [1/min], of the surrogate of 2 MW or another."""
     turning = Rotor() if rotor is None else rotor
-    return np.array([turning.rotor_speed(v) * 30.0 / np.pi for v in SPEEDS])
+    return np.array([turning.rotor_speed(v) * RPM for v in SPEEDS])
 
 
 def by_wind(lives: Floats, speed: Floats | None = None) -> Floats:

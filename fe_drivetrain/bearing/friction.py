@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from fe_drivetrain.bearing.catalogue import Entry
 from fe_drivetrain.bearing.designations import Kind
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 
@@ -261,7 +262,7 @@ def palmgren_friction(
     M0 = 1e-7 f0 (nu n)^(2/3) d_m^3 [N mm] with nu in mm^2/s, n in 1/min and d_m in mm, for nu n of
     2000 at least: printed formulas have 160e-7 f0 d_m^3 below, 0.8 % more than the first one there.
     """
-    n = np.abs(np.asarray(speed, dtype=float)) * 30.0 / np.pi
+    n = np.abs(np.asarray(speed, dtype=float)) * RPM
     key, d = bearing.factor_key, bearing.mean_diameter
     f0 = F0_GREASE[key] if supply == "grease" else F0_BATH[key] * (1 + (supply == "oil jet"))
     stirred = np.maximum(1e6 * viscosity * n, SLOW) ** (2.0 / 3.0)

@@ -23,6 +23,7 @@ from fe_drivetrain.bearing.friction import (
     axial_of_rows,
 )
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.common.errors import InputError
 
 Constants = Mapping[str, tuple[float, ...]]
@@ -178,7 +179,7 @@ def skf_friction(
     Fr, Fa, n = np.broadcast_arrays(
         np.abs(np.asarray(radial, dtype=float)),
         np.abs(np.asarray(axial, dtype=float)),
-        np.abs(np.asarray(speed, dtype=float)) * 30.0 / np.pi,
+        np.abs(np.asarray(speed, dtype=float)) * RPM,
     )
     nu = 1e6 * viscosity
     coefficient = sliding_coefficient(bearing, speed, viscosity)
@@ -235,7 +236,7 @@ def sliding_coefficient(bearing: FrictionBearing, speed: ArrayLike, viscosity: f
     coefficient : Floats
         phi_bl mu_bl + (1 - phi_bl) mu_EHL with phi_bl = exp(-2.6e-8 (n nu)^1.4 d_m).
     """
-    n = np.abs(np.asarray(speed, dtype=float)) * 30.0 / np.pi
+    n = np.abs(np.asarray(speed, dtype=float)) * RPM
     dry = np.exp(-2.6e-8 * (n * 1e6 * viscosity) ** 1.4 * 1e3 * bearing.mean_diameter)
     wet = FULL_FILM.get(bearing.kind, MINERAL_FILM)
     return np.asarray(dry * np.where(n > 0.0, BOUNDARY, STARTING) + (1.0 - dry) * wet)

@@ -20,6 +20,7 @@ from fe_drivetrain.command_line.settings import (
 )
 from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.studies import run_on_scene
+from fe_drivetrain.common.components import ONE_RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import hold_threads
 
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
     from fe_drivetrain.procedure import Excitation
     from fe_drivetrain.report.suite.run import Run
     from fe_drivetrain.studies.drivetrain_modes import ModesResult
-
-_RPM = math.pi / 30.0
 
 
 @dataclass(frozen=True)
@@ -129,7 +128,7 @@ def modes_command(context: typer.Context, asked: ModesRequest) -> int:
     """
     hold_threads()
     speeds = None if asked.speeds is None else parse_speeds(asked.speeds)
-    speed = None if asked.speed is None else asked.speed * _RPM
+    speed = None if asked.speed is None else asked.speed * ONE_RPM
     share = parse_tolerance(asked.tolerance)
     excitations = parse_excitations(asked.excite or ())
     from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
@@ -217,7 +216,7 @@ def parse_speeds(text: str) -> tuple[float, float]:
             f"--speeds {text} must be two speeds in rpm, the larger one last: write it as in "
             "--speeds 6.9:12.1"
         )
-    return found[0] * _RPM, found[1] * _RPM
+    return found[0] * ONE_RPM, found[1] * ONE_RPM
 
 
 def parse_excitations(texts: Iterable[str]) -> tuple[Excitation, ...]:

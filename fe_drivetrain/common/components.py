@@ -18,6 +18,9 @@ CYLINDRICAL_STRESSES = ("xx", "rr", "tt", "xr", "xt", "rt")
 #: Revolutions a minute at 1 rad/s.
 RPM = 30.0 / pi
 
+#: Speed of one revolution a minute [rad/s].
+ONE_RPM = pi / 30.0
+
 #: Standard gravity [m/s^2] (CGPM 1901).
 GRAVITY = 9.80665
 

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import GRAVITY
+from fe_drivetrain.common.components import GRAVITY, ONE_RPM
 from fe_drivetrain.common.csv_cells import SafeWriter
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
@@ -29,7 +29,7 @@ _UNITS: Mapping[str, tuple[float, str]] = {
         "N": {"N": 1.0, "kN": 1e3, "MN": 1e6},
         "N m": {"Nm": 1.0, "kNm": 1e3, "MNm": 1e6},
         "rad": {"rad": 1.0, "deg": _TURN},
-        "rad/s": {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": _TURN},
+        "rad/s": {"rad/s": 1.0, "rpm": ONE_RPM, "deg/s": _TURN},
         "m": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
         "m/s": {"m/s": 1.0},
         "m/s^2": {"m/s^2": 1.0, "m/s2": 1.0, "g": GRAVITY},

@@ -17,12 +17,11 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, model_validator
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import ONE_RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.reading import parse_mapping, read_text, validated
 from fe_drivetrain.dynamics.torsion.system import Torsional
 from fe_drivetrain.procedure.motions import driven_motions, element_torques
-
-_RPM = np.pi / 30.0
 
 
 class _Row(BaseModel):
@@ -60,7 +59,7 @@ class MeasurementCase(_Row):
             [s].
         """
         times, speeds, _ = np.array(self.corners).T
-        return np.asarray(np.interp(time, times, speeds * _RPM))
+        return np.asarray(np.interp(time, times, speeds * ONE_RPM))
 
     def torque(self, time: Floats) -> Floats:
         """Torque of the generator against the rotation, over the rated one.

@@ -47,6 +47,7 @@ from fe_drivetrain.shafts.response.model import scene_loads
 from fe_drivetrain.shafts.uncertainty.resolver import Resolver, unit_content
 from fe_drivetrain.studies.design_request import DesignRequest
 from fe_drivetrain.studies.rolling_bearings import OneBearing, bearings_of
+from fe_drivetrain.studies.rotor_speeds import rated_speed
 from fe_drivetrain.studies.turning_advice import finest_modes
 from fe_drivetrain.studies.turning_model import TurningModel
 from fe_drivetrain.studies.turning_quantities import turning_quantity
@@ -213,9 +214,9 @@ class DesignQuantities:
         request = self.request
         where = self.drivetrain if isinstance(self.drivetrain, Scene) else AtFront()
         speed = request.life.rotor_speed_rpm
-        operation = self.drivetrain.operation
-        if speed is None and operation is not None and operation.rotor_speed is not None:
-            speed = float(operation.rotor_speed[1] * RPM)
+        rated = rated_speed(self.drivetrain)
+        if speed is None and rated is not None:
+            speed = rated * RPM
         if speed is not None and not speed > 0.0:
             raise InputError(
                 f"{argument('LifeOptions.rotor_speed_rpm', speed)} 1/min, but life counts turns: "

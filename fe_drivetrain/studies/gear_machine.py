@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from fe_drivetrain.common.arguments import argument
+from fe_drivetrain.common.components import ONE_RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.entrance import Entrance
@@ -23,7 +24,6 @@ from fe_drivetrain.studies.mode_levels import WORDS, named_rung
 from fe_drivetrain.studies.rotor_speeds import rated_speed
 
 NOTHING: Mapping[str, str] = MappingProxyType({})
-RPM = 0.10471975511965977
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def gear_train(
     if operation is not None and operation.lubricant is not None:
         oil = 1e-6 * float(operation.lubricant.split()[1])
     if options.rotor_speed_rpm:
-        speed = options.rotor_speed_rpm * RPM
+        speed = options.rotor_speed_rpm * ONE_RPM
     if options.lubricant is not None:
         oil = 1e-6 * options.lubricant
     stated = "as asked"

@@ -12,6 +12,7 @@ import numpy as np
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.cache import user_cache
+from fe_drivetrain.common.components import ONE_RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress
@@ -307,7 +308,7 @@ def _read(file: Path, reading: Reading) -> FileSpectrum:
             "`ChannelMap(channels={'rotor speed': 'RotSpeed'})`"
         )
     if speed is None:
-        speed = np.full(len(history), (options.rotor_speed_rpm or 0.0) * np.pi / 30.0)
+        speed = np.full(len(history), (options.rotor_speed_rpm or 0.0) * ONE_RPM)
     seconds = np.broadcast_to(np.asarray(history.sampling.weights), len(history)).astype(float)
     turns = np.abs(speed) * seconds / (2.0 * np.pi)
     loads = reading.loads(history)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.components import FORCES, ONE_RPM
 from fe_drivetrain.common.errors import InputError, require_known
 from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.studies.history_options import HistoryOptions, require_between
@@ -108,7 +108,7 @@ class LoadOptions(HistoryOptions):
     @property
     def rotor_speed(self) -> float | None:
         """Rotor speed of files that state none [rad/s]."""
-        return None if self.rotor_speed_rpm is None else self.rotor_speed_rpm * np.pi / 30.0
+        return None if self.rotor_speed_rpm is None else self.rotor_speed_rpm * ONE_RPM
 
     @property
     def cycle_rule(self) -> CycleRule:

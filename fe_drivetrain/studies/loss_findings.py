@@ -6,6 +6,7 @@ import numpy as np
 
 from fe_drivetrain.bearing_life.life.lubricants import VISCOSITY_INDEX
 from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.components import RPM
 from fe_drivetrain.dynamics.bodies.power_losses import Losses
 from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.charts import bars, chart, trace
@@ -162,7 +163,7 @@ def shaft_rows(losses: DrivetrainLosses) -> list[Record]:
         rows.append(
             {
                 "shaft": name,
-                "speed [rpm]": float(own.speed[0]) * abs(ratio) * 30.0 / np.pi,
+                "speed [rpm]": float(own.speed[0]) * abs(ratio) * RPM,
                 "torque without losses [kN m]": float(own.torque[0]) / abs(ratio) / 1e3,
                 "torque behind its bearings [kN m]": torque / abs(ratio) / 1e3,
                 "power behind its bearings [kW]": torque * float(own.speed[0]) / 1e3,
@@ -215,7 +216,7 @@ def torque_rows(losses: DrivetrainLosses) -> list[Record]:
         rows.append(
             {
                 "torque of the rotor [kN m]": float(own.torque[k]) / 1e3,
-                "speed of the rotor [rpm]": float(own.speed[k]) * 30.0 / np.pi,
+                "speed of the rotor [rpm]": float(own.speed[k]) * RPM,
                 "time [h]": float(losses.seconds[k - 1]) / 3600.0,
                 "efficiency [%]": None if np.isnan(efficiency) else 100.0 * efficiency,
                 "heat [kW]": float(own.heat[:, k].sum()) / 1e3,

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import ONE_RPM, RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.jobs import mapped
 from fe_drivetrain.common.progress import Progress, silent
@@ -19,6 +20,7 @@ from fe_drivetrain.report.results import Chart
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.shafts.response.entering import entering
 from fe_drivetrain.studies.result import Result
+from fe_drivetrain.studies.rotor_speeds import rated_speed
 from fe_drivetrain.studies.strength_answers import (
     JointAnswer,
     SectionAnswer,
@@ -204,7 +206,7 @@ def _parts(
     if rows is None:
         speed = _with_speed(options, scene).rotor_speed_rpm or 0.0
         hours = HOURS if options.hours is None else options.hours
-        rows = [(wrench[3], hours, speed * np.pi / 30.0)]
+        rows = [(wrench[3], hours, speed * ONE_RPM)]
     found = []
     for torque, hours, speed in torque_classes(rows, _rated_speed(options, scene)):
         loads = wrench.copy()
@@ -217,8 +219,8 @@ def _parts(
 
 def _rated_speed(options: StrengthOptions, scene: Scene) -> float | None:
     """Rated speed of the rotor [rad/s], as asked for or of the file."""
-    rpm = _with_speed(options, scene).rotor_speed_rpm
-    return None if rpm is None else rpm * np.pi / 30.0
+    rpm = options.rotor_speed_rpm
+    return rated_speed(scene) if rpm is None else rpm * ONE_RPM
 
 
 def _entered(scene: Scene, wrench: Floats) -> Floats:
@@ -230,11 +232,10 @@ def _entered(scene: Scene, wrench: Floats) -> Floats:
 
 def _with_speed(options: StrengthOptions, scene: Scene) -> StrengthOptions:
     """Choices with the rated speed of the file, where none is asked for."""
-    operation = scene.operation
-    if options.rotor_speed_rpm is not None or operation is None or operation.rotor_speed is None:
+    rated = rated_speed(scene)
+    if options.rotor_speed_rpm is not None or rated is None:
         return options
-    rpm = operation.rotor_speed[1] * 30.0 / np.pi
-    return StrengthOptions(**{**vars(options), "rotor_speed_rpm": rpm})
+    return replace(options, rotor_speed_rpm=rated * RPM)
 
 
 def _repeats(

@@ -12,6 +12,7 @@ import numpy as np
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import user_cache
+from fe_drivetrain.common.components import ONE_RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress
 from fe_drivetrain.common.provenance import program_hash
@@ -334,7 +335,7 @@ def _read(file: Path, model: StrengthModel, options: HistoryOptions) -> Strength
             "`ChannelMap(channels={'rotor speed': 'RotSpeed'})`"
         )
     if speed is None:
-        speed = np.full(len(history), (options.rotor_speed_rpm or 0.0) * np.pi / 30.0)
+        speed = np.full(len(history), (options.rotor_speed_rpm or 0.0) * ONE_RPM)
     wind = float("nan") if found.wind_speed is None else float(found.wind_speed.mean())
     values = entering(AtFront(model.entrance), history).values
     return history_sums(model, values, speed, history.step, wind)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import ONE_RPM
 from fe_drivetrain.dynamics.time.machine_channels import of_planet
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.studies.transient_digest import FileDigest, equivalent_range
@@ -16,7 +17,7 @@ from fe_drivetrain.studies.transient_ladder import QUANTITIES, LevelError
 from fe_drivetrain.studies.transient_runs import SMALL, Extreme, LevelRun
 from fe_drivetrain.turbine_loads.histories.classes import Classes, added
 
-_SHOWN = {"N m": ("kN m", 1e3), "N": ("kN", 1e3), "rad/s": ("rpm", np.pi / 30.0)}
+_SHOWN = {"N m": ("kN m", 1e3), "N": ("kN", 1e3), "rad/s": ("rpm", ONE_RPM)}
 """Units that people use, and their size."""
 
 _SPECTRA = ("torque", "mesh")

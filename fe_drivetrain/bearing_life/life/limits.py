@@ -15,6 +15,7 @@ from fe_drivetrain.bearing_life.life.rated import RatedBearing
 from fe_drivetrain.bearing_life.life.reference_life import LINE
 from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import ONE_RPM
 from fe_drivetrain.common.errors import InputError
 
 FASTEST = 3e6
@@ -221,6 +222,6 @@ def centrifugal_load(bearing: Bearing, speed_rpm: float) -> float:
     for row in bearing.rows:
         length = 2.0 / 3.0 * row.diameter if isinstance(row, BallRow) else row.length
         mass = STEEL_DENSITY * np.pi / 4.0 * row.diameter**2 * length
-        cage = np.pi / 30.0 * speed_rpm * 0.5 * (1.0 - pitch_ratio(row))
+        cage = ONE_RPM * speed_rpm * 0.5 * (1.0 - pitch_ratio(row))
         found.append(float(mass * row.radius * cage**2))
     return max(found)

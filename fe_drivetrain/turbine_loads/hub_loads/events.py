@@ -18,6 +18,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.components import ONE_RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.turbine import Turbine
@@ -25,7 +26,7 @@ from fe_drivetrain.turbine_loads.hub_loads.turbine import Turbine
 State = Literal["normal operation", "start-up", "normal stop", "emergency stop"]
 Shaft = Literal["slow", "fast"]
 
-RATED = {"slow": 2e6 / (18.1 * math.pi / 30.0), "fast": 2e6 / (1680.0 * math.pi / 30.0)}
+RATED = {"slow": 2e6 / (18.1 * ONE_RPM), "fast": 2e6 / (1680.0 * ONE_RPM)}
 """Torque of 2 MW at 18.1 and 1680 rpm (Al-Hamadani 2018, Table 3.1) [N m]."""
 
 SWING = 0.814

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.components import FORCES
+from fe_drivetrain.common.components import FORCES, ONE_RPM
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import (
@@ -45,7 +45,7 @@ from fe_drivetrain.turbine_loads.hub_loads.point_loads import moved_moments
 from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_table, is_table, require_kind
 from fe_drivetrain.turbine_loads.hub_loads.table_names import HUB, TABLE_NAMES, named_columns
 
-SPEED_UNITS = {"rad/s": 1.0, "rpm": np.pi / 30.0, "deg/s": np.pi / 180.0}
+SPEED_UNITS = {"rad/s": 1.0, "rpm": ONE_RPM, "deg/s": np.pi / 180.0}
 WIND_UNITS = {"m/s": 1.0}
 
 KNOWN = {
