@@ -29,8 +29,8 @@ def compare_runs_command(
 ) -> None:
     """Compare all checks and figures of two runs of the cases.
 
-    Lists cases and checks that were lost, added or renamed, verdicts, values and what checks allow
-    that changed, the most serious first, and counts what is the same to the last digit. The exit
+    Lists cases and checks that were lost, added or renamed, and verdicts, values and tolerances
+    that changed, the most serious first. Counts what is the same to the last digit. The exit
     status is 0 if no case, no check and no passed verdict was lost, 1 otherwise.
     """
 

@@ -41,9 +41,9 @@ Limits = Annotated[
     typer.Option(
         "--limit",
         metavar="LIMIT",
-        help="A limit that the design keeps, in quotes: 'life>=20 years', 'pressure<=1.5 GPa', "
+        help="A limit that the design must keep, in quotes: 'life>=20 years', 'pressure<=1.5 GPa', "
         "'tilt<=0.5 mrad', 'stress<=100 MPa', 'deflection<=1 mm', 'frequency>=2 Hz', 'mass<=9 t', "
-        "or of a name of --quantity. May be repeated.",
+        "or with a name of --quantity. May be repeated.",
     ),
 ]
 Prices = Annotated[
@@ -60,8 +60,8 @@ Front = Annotated[
     typer.Option(
         "--front",
         metavar="NAME",
-        help="The limit over whose values the least is shown, as in life. Default: that which "
-        "costs most.",
+        help="The limit over whose values the least result is shown, as in life. Default: the "
+        "limit that costs most.",
     ),
 ]
 Starts = Annotated[
@@ -78,7 +78,7 @@ SearchLoads = Annotated[
     typer.Option(
         "--loads",
         metavar="FILES",
-        help="Hub loads under which life is, as for `life`; without them it is under --load.",
+        help="Hub loads for lives, as in `life`. Default: --load.",
     ),
 ]
 SearchEvery = Annotated[
@@ -108,8 +108,8 @@ class CompareRequest:
             metavar="KEY=VALUES",
             help="Compare one scene over values of a parameter: a list, as in "
             "shaft.sections.0.inner_diameter=0.2,0.3,0.4, or a range and a number of values, as in "
-            "0.2:0.4:5. With --minimise what may vary: a range, as in 0.2:0.4, or a list, of which "
-            "each is tried; may then be repeated.",
+            "0.2:0.4:5. With --minimise a range, as in 0.2:0.4, or a list, each value of which is "
+            "tried; may then be repeated.",
         ),
     ] = None
     quantity: Annotated[
@@ -162,7 +162,7 @@ def refuse_without_search(asked: CompareRequest) -> None:
     for option, value in given.items():
         if value:
             raise InputError(
-                f"{option} is for a search: name what shall be least, as in --minimise mass"
+                f"{option} is for a search: name what to minimise, as in --minimise mass"
             )
 
 

@@ -39,11 +39,11 @@ def compare_command(context: typer.Context, asked: CompareRequest) -> int:
     """Compare designs: what changes, ranked; with --minimise find the best one within limits.
 
     Each quantity comes from the cheapest level that is enough: its bands in both designs together
-    are within the tolerance. A change that is smaller than its band may be zero: it is named.
+    are within the tolerance. Changes that are smaller than their bands may be zero: they are named.
 
     With --minimise, values of --vary are searched for the design that is least in mass, cost or
-    another quantity and keeps each --limit at the level that is enough. Stopped, it goes on where
-    it was.
+    another quantity and keeps each --limit at the level that is enough. A search that was stopped
+    continues where it was.
 
     The exit status is 0 if every change is known within the tolerance, or every limit is kept, and
     1 if not.
@@ -83,7 +83,7 @@ def _only(texts: Sequence[str]) -> str:
     if len(texts) > 1:
         raise InputError(
             f"--vary is given {len(texts)} times: a comparison is over values of one parameter; "
-            "name what shall be least with --minimise to search over several"
+            "name what to minimise with --minimise to search over several"
         )
     return texts[0]
 

@@ -35,7 +35,7 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     ),
     "life": (
         "two_bearings --loads 'outputs/*.outb' --site class-II",
-        "mine.yaml --loads outputs --bearing front=240/630",
+        "mine.yaml --loads outputs --bearing front=bearing_s",
         "mine.yaml --loads outputs --only front --series roller=21",
         "grc_750kw --loads outputs --gearbox-temperature 65",
     ),

@@ -131,7 +131,7 @@ class ExportRequest:
 def export_command(context: typer.Context, asked: ExportRequest) -> int:
     """Write a drivetrain for other programs: matrices, a model for CalculiX, or its mesh.
 
-    Matrices are of a part, condensed to points, or with --what turning of all that turns. A
+    Matrices are those of a part, condensed to points, or, with --what turning, of all that turns. A
     drivetrain whose main shaft has no sections has the latter alone.
     """
     if asked.formats:

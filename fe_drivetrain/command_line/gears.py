@@ -22,10 +22,10 @@ from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 def gears_command(context: typer.Context, asked: GearsRequest) -> int:
     """Rate the gears of a drivetrain by ISO 6336, with its own spread of loads.
 
-    Statics over a turn of the rotor say how planets share the torque and how the load spreads over
-    the face; safety of flanks and roots, and damage over hours, a torque spectrum or files of hub
-    loads follow. What the file does not state is not rated, and is named. Levels from formulas to
-    flexible shafts stand side by side. Tables stand beside the page as CSV.
+    Statics over a turn of the rotor give the share of each planet and the load along the face; from
+    these follow safety of flanks and roots, and damage over hours, a torque spectrum or files of
+    hub loads. Gears without the data are named, and not rated. Levels from formulas to flexible
+    shafts are compared. Tables are beside the page as CSV.
 
     The exit status is 0 if every check passes.
     """

@@ -76,7 +76,7 @@ class GearsRequest:
     hours: Annotated[
         float | None,
         typer.Option(
-            "--hours", metavar="H", help="Life asked for, without a site. Default: 175200."
+            "--hours", metavar="H", help="Required life, without a site. Default: 175200."
         ),
     ] = None
     level: Annotated[
@@ -126,8 +126,8 @@ class GearsRequest:
         typer.Option(
             "--lubricant",
             metavar="GRADE",
-            help="Oil, as in 'VG 320' or 320 (mm2/s at 40 degC; of grades beside 220, 320 and "
-            "460 with a viscosity index of 95). Default: operation.lubricant.",
+            help="Oil, as in 'VG 320' or 320 (mm2/s at 40 degC; other grades than 220, 320 "
+            "and 460 have a viscosity index of 95). Default: operation.lubricant.",
         ),
     ] = None
     rotor_speed: Annotated[

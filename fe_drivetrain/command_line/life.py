@@ -23,10 +23,10 @@ from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
 def life_command(context: typer.Context, asked: LifeRequest) -> int:
     """Rating life of a drivetrain's bearings under load histories, by ISO 281 and ISO/TS 16281.
 
-    Main bearings are brought to equilibrium with shaft and rollers at each load step; bearings of
-    the gearbox take their loads from statics of the whole drivetrain. Lives L10, L10m, L10r and
-    L10mr stand side by side, with the damage by wind speed, row, ring and place of the rollers, and
-    with the time in which the methods do not hold. Tables stand beside the page as CSV.
+    Main bearings are in equilibrium with shaft and rollers at each load step; bearings of the
+    gearbox have their loads from statics of the whole drivetrain. The page has the lives L10, L10m,
+    L10r and L10mr, the damage by wind speed, row, ring and place of the rollers, and the time in
+    which the methods are outside of their range. Tables are beside the page as CSV.
 
     The exit status is 0 if every check passes.
     """

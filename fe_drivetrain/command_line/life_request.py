@@ -63,7 +63,10 @@ class LifeRequest:
         ),
     ] = str(LifeOptions.lubricant)
     temperature: Annotated[
-        float, typer.Option("--temperature", metavar="DEGC", help="Of the bearing in operation.")
+        float,
+        typer.Option(
+            "--temperature", metavar="DEGC", help="Temperature of the bearing in operation."
+        ),
     ] = LifeOptions.temperature
     supply: Annotated[
         str, typer.Option("--supply", metavar="KIND", help="grease, 'filtered oil' or 'oil bath'.")
@@ -73,8 +76,8 @@ class LifeRequest:
         typer.Option(
             "--cleanliness",
             metavar="CLASS",
-            help="Of grease: high, normal, 'slight to typical', severe, 'very severe'; of oil a "
-            "code of ISO 4406, as in -/15/12. Default: normal, -/15/12.",
+            help="Class of grease: high, normal, 'slight to typical', severe, 'very severe'; of "
+            "oil a code of ISO 4406, as in -/15/12. Default: normal, -/15/12.",
         ),
     ] = None
     profile: Annotated[
@@ -111,14 +114,16 @@ class LifeRequest:
         typer.Option(
             "--rings",
             metavar="MODEL",
-            help="The bearing's rings: rigid, three-degree, or housing (the raceway gives way with "
-            "the scene's housing, whose bore it has to be).",
+            help="The bearing's rings: rigid, three-degree, or housing (the raceway deforms with "
+            "the scene's housing; it must be the housing's bore).",
         ),
     ] = LifeOptions.rings
     reliability: Annotated[
         float,
         typer.Option(
-            "--reliability", metavar="PERCENT", help="Of modified lives: 90, 95 to 99, 99.5, 99.9."
+            "--reliability",
+            metavar="PERCENT",
+            help="Reliability of modified lives: 90, 95 to 99, 99.5, 99.9.",
         ),
     ] = LifeOptions.reliability_percent
     channel: Channels = None

@@ -60,7 +60,7 @@ class LoadsRequest:
     frequency: Annotated[
         float,
         typer.Option(
-            "--frequency", metavar="HZ", min=1e-6, help="Of damage-equivalent loads, in Hz."
+            "--frequency", metavar="HZ", min=1e-6, help="Frequency of damage-equivalent loads."
         ),
     ] = 1.0
     ultimate: Annotated[
@@ -86,8 +86,8 @@ class LoadsRequest:
         typer.Option(
             "--gate",
             metavar="SHARE",
-            help="Leave out cycles below a share of the largest range, as in 1%. How many is on "
-            "the page.",
+            help="Leave out cycles below a share of the largest range, as in 1%. The page states "
+            "their number.",
         ),
     ] = "0"
     target: Annotated[

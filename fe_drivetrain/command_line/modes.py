@@ -70,7 +70,7 @@ class ModesRequest:
         typer.Option(
             "--speed",
             metavar="RPM",
-            help="Speed of the rotor of the frequencies in operation. Default: the largest.",
+            help="Rotor speed for the frequencies in operation. Default: the largest speed.",
         ),
     ] = None
     blades: Annotated[
@@ -117,12 +117,12 @@ class ModesRequest:
 def modes_command(context: typer.Context, asked: ModesRequest) -> int:
     """Find natural frequencies of a drivetrain, what moves in each mode, and what excites it.
 
-    The page has a Campbell diagram with every excitation that can cross in operation (blades,
-    planets, teeth with sidebands, shafts), mode shapes that move, energy by part, a resonance
-    register with margins, and what each level of the model gives.
+    The page has a Campbell diagram with every excitation that can meet a mode in operation
+    (blades, planets, teeth with sidebands, shafts), mode shapes that move, energy by part, a
+    resonance register with margins, and the results of each level of the model.
 
-    With --whirl, each shaft is a rotor by itself on its bearings, which may change with the speed:
-    the file's key whirl has that, damping and unbalance.
+    With --whirl, each shaft is a rotor by itself on its bearings. The file's key whirl has
+    unbalance, damping, and stiffness of bearings over the speed.
 
     The exit status is 0 if the modes were found, 2 if the file or an option is wrong.
     """

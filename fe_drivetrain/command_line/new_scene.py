@@ -38,14 +38,14 @@ def new_command(
         typer.Option(
             "--from",
             metavar="MODEL",
-            help="A gearbox model in REXS 1.0 to 1.6 (.rexs, .rexsj, .rexsz) to begin from: what "
-            "it does not give is listed.",
+            help="A gearbox model in REXS 1.0 to 1.6 (.rexs, .rexsj, .rexsz) to begin from. What "
+            "it lacks is listed.",
         ),
     ] = None,
     bearing: Annotated[
         bool,
         typer.Option(
-            "--bearing", help="A file of bearings instead, by what a catalogue's page prints."
+            "--bearing", help="A file of bearings instead, with the numbers of a catalogue's page."
         ),
     ] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace existing files.")] = False,

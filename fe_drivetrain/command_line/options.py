@@ -43,8 +43,7 @@ LoadFiles = Annotated[
         "--loads",
         metavar="FILES",
         help="Hub loads: a file (.out, .outb, .csv, or of other programs), a folder, or a "
-        "pattern in "
-        "quotes, as in 'outputs/*.outb'. May be repeated.",
+        "pattern in quotes, as in 'outputs/*.outb'. May be repeated.",
     ),
 ]
 Channels = Annotated[
@@ -63,13 +62,13 @@ Mapping = Annotated[
         "--mapping",
         metavar="YAML",
         help="Names, units, frame and origin of channels, for files of other programs "
-        "(docs/loads.md); --channel, where there is one, goes before it.",
+        "(docs/loads.md). --channel replaces its names.",
     ),
 ]
 RotorSpeed = Annotated[
     float | None,
     typer.Option(
-        "--rotor-speed", metavar="RPM", min=0.0, help="Of files that have no rotor speed."
+        "--rotor-speed", metavar="RPM", min=0.0, help="Rotor speed of files that have none."
     ),
 ]
 Skip = Annotated[
@@ -78,7 +77,7 @@ Skip = Annotated[
         "--skip",
         metavar="SECONDS",
         min=0.0,
-        help="What is left out at the beginning of each file of loads.",
+        help="Time to leave out at the beginning of each file of loads.",
     ),
 ]
 Slopes = Annotated[
@@ -101,8 +100,8 @@ BearingEntries = Annotated[
     typer.Option(
         "--bearing",
         metavar="NAME=ENTRY",
-        help="Entry of the bearing catalogue for a bearing of the drivetrain, before what its file "
-        "says under 'catalogue', as in 'stage 1 pin upwind=planet_nj2232'. May be repeated.",
+        help="Entry of the bearing catalogue for a bearing of the drivetrain, in place of the one "
+        "in its file, as in 'stage 1 pin upwind=planet_nj2232'. May be repeated.",
     ),
 ]
 WindSite = Annotated[
@@ -118,8 +117,8 @@ Resume = Annotated[
     bool,
     typer.Option(
         "--resume",
-        help="Go on where a run was stopped: files that were done with the same options, and have "
-        "not changed since, are not read again.",
+        help="Continue a run that was stopped: files that were done with the same options, and "
+        "have not changed since, are not read again.",
     ),
 ]
 Scheduler = Annotated[
@@ -135,16 +134,16 @@ Condensed = Annotated[
     bool,
     typer.Option(
         "--condensed",
-        help="Levels go on with what has to be condensed: housings of main bearings at both "
-        "bounds, carriers, the main shaft in its meridian. Meshes the housings once.",
+        help="Further levels, with condensed parts: housings of main bearings at both bounds, "
+        "carriers, the main shaft in its meridian. Meshes the housings once.",
     ),
 ]
 Matrices = Annotated[
     bool,
     typer.Option(
         "--matrices",
-        help="A last level has gearbox bearings with a catalogue entry by the 6 x 6 stiffness of "
-        "their rollers, laminae and clearance included, at the rated torque.",
+        help="A last level, with the 6 x 6 stiffness of the rollers (laminae, clearance) of "
+        "gearbox bearings that have a catalogue entry, at the rated torque.",
     ),
 ]
 

@@ -73,7 +73,7 @@ _Verbose = Annotated[
         "-v",
         callback=_ask_for_remarks,
         expose_value=False,
-        help="Say what is otherwise done without a word, as to make a damaged kept file again.",
+        help="Print remarks, too, such as that a damaged kept file is made again.",
     ),
 ]
 

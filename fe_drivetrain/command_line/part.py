@@ -131,7 +131,7 @@ def _check_picture(picture: Path, overwrite: bool) -> None:
     from fe_drivetrain.common.files import check_writable
 
     if picture.suffix != ".png" or not picture.absolute().parent.is_dir():
-        raise InputError(f"{picture} must end in .png, in a folder that there is")
+        raise InputError(f"{picture} must end in .png, in an existing folder")
     check_writable(picture)
     if picture.exists() and not overwrite:
         raise InputError(f"--picture {picture} exists: give another file, or add --overwrite")

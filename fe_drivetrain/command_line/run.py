@@ -149,7 +149,7 @@ def run_command(
         from fe_drivetrain.report.suite.case import all_cases, find_cases
 
         if all_ and names:
-            raise InputError(f"--all runs {', '.join(names)} too: drop one of the two")
+            raise InputError(f"--all runs {', '.join(names)} too: leave one of the two out")
         if not all_ and not names:
             raise InputError("Missing CASE: name one or more, or give --all")
         if all_:

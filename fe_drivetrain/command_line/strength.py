@@ -25,7 +25,7 @@ def strength_command(context: typer.Context, asked: StrengthRequest) -> int:
     Internal forces of every section come from the shaft on its bearings; stress at fillets from
     elasticity, with bands. Each point of the turning shaft is counted by rainflow, mean stress
     included, and damage adds up over the life. Sections whose notch the file does not state are
-    named. Tables stand beside the page as CSV.
+    named. Tables are beside the page as CSV.
 
     The exit status is 0 if every check passes.
     """

@@ -64,15 +64,15 @@ class StrengthRequest:
     hours: Annotated[
         float | None,
         typer.Option(
-            "--hours", metavar="H", help="Life asked for, without a site. Default: 175200."
+            "--hours", metavar="H", help="Required life, without a site. Default: 175200."
         ),
     ] = None
     housings: Annotated[
         bool,
         typer.Option(
             "--housings/--rigid",
-            help="Whether housings give, between two bounds, where the loads of the shaft depend "
-            "on it. Meshes them once.",
+            help="Whether housings are elastic, between two bounds, where the loads of the shaft "
+            "depend on that. Meshes them once.",
         ),
     ] = StrengthOptions.housings
     elastic: Annotated[

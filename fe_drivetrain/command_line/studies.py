@@ -87,8 +87,8 @@ def advise_command(
         bool,
         typer.Option(
             "--to-the-top",
-            help="Run every level, even if a cheaper one is accurate enough; of modes and gears "
-            "a main shaft and carriers of solids, too.",
+            help="Run every level, even if a cheaper one is accurate enough; for modes and gears "
+            "also a main shaft and carriers of solids.",
         ),
     ] = False,
     out: OutFolder = None,

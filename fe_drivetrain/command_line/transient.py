@@ -39,8 +39,8 @@ def transient_command(context: typer.Context, asked: TransientRequest) -> int:
 
     Stops it with its brake, takes its grid away, lets the voltage dip, runs it up through its
     resonances, moves its generator out of line or its base, or drives it by histories of hub loads:
-    torsional, as rigid bodies, and with flexible shafts, and by the cheapest of them that is
-    enough. Each begins from steady turning under rated torque, wound up.
+    torsional, as rigid bodies and with flexible shafts; the cheapest level that is enough is
+    reported. Each event begins from steady turning under rated torque.
 
     The exit status is 0 if every check passes.
     """

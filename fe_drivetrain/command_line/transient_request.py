@@ -92,8 +92,8 @@ class TransientRequest:
         bool,
         typer.Option(
             "--on-rollers",
-            help="A last level has bearings with a catalogue entry, those of planets too, on their "
-            "rollers in each step, laminae and clearance included. Under histories.",
+            help="A last level, with bearings that have a catalogue entry (also those of planets) "
+            "on their rollers, laminae and clearance in each step. For histories.",
         ),
     ] = False
     quantity: Annotated[
@@ -101,7 +101,7 @@ class TransientRequest:
         typer.Option(
             "--quantity",
             metavar="NAME",
-            help="For which the level has to be enough: torque, mesh or bearing.",
+            help="Quantity for which the level must be enough: torque, mesh or bearing.",
         ),
     ] = "bearing"
     tolerance: Tolerance = "5%"
@@ -110,8 +110,8 @@ class TransientRequest:
         typer.Option(
             "--duration",
             metavar="SECONDS",
-            help="End of the event, or how much of each history. Default: what the event needs; "
-            "the whole history.",
+            help="Time that is computed of the event, or of each history. Default: what the event "
+            "needs; the whole history.",
         ),
     ] = None
     step: Annotated[
@@ -119,8 +119,8 @@ class TransientRequest:
         typer.Option(
             "--step",
             metavar="SECONDS",
-            help="Step of integration. Default: what the event needs; of histories 0.005, or what "
-            "is between samples where that is less.",
+            help="Step of integration. Default: what the event needs; for histories 0.005, or the "
+            "time between samples where that is less.",
         ),
     ] = None
     backlash: Annotated[

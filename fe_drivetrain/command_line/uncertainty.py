@@ -49,7 +49,7 @@ class UncertaintyRequest:
         typer.Option(
             "--level",
             metavar="LEVEL",
-            help="Sample level 1 (beam) or 2 (meridian) without running the adviser; of modes and "
+            help="Sample level 1 (beam) or 2 (meridian) without running the adviser; for modes and "
             "gears torsional, rigid or flexible. The assembly of solids is then not solved, and "
             "the model error is known only as bounds. Or sample level 4, the assembly itself, for "
             "reactions and stiffnesses at the hub: seconds a sample.",

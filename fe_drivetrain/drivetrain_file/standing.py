@@ -143,7 +143,7 @@ def check_held(
             lost.append(described_motion(body.parts, motion, centre, length, "nearly"))
     if lost:
         raise InputError(
-            f"the {whole} is a mechanism but for round-off: " + "; ".join(lost) + ": the springs "
+            f"the {whole} is a mechanism within round-off: " + "; ".join(lost) + ": the springs "
             f"there are below {_EPSILON:.1g} of the {body.parts[0]}'s own stiffness: make them "
             "stiffer, or hold the motion rigidly"
         )

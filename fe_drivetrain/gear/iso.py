@@ -140,12 +140,12 @@ def iso_gear_stiffness(
     pair : Pair
         External or internal.
     specific_load : float, optional
-        F_t K_A / b [N/m]; below 100 N/mm stiffness falls with its fourth root. Without one the
-        load is taken as higher.
+        F_t K_A / b [N/m]; below 100 N/mm stiffness falls with its fourth root. Without one it
+        is taken as at least that.
     blank : float
         C_R, mean of both gears: see `blank_factor`.
     youngs_modulus : float
-        Young's modulus of both gears [Pa]; other than steel's by E / E_steel.
+        Young's modulus of both gears [Pa]; stiffness goes with E / E_steel.
 
     Returns
     -------

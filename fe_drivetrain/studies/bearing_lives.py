@@ -160,7 +160,7 @@ def life(
     drivetrain : Drivetrain
         The drivetrain: main bearings, and those of its gearbox.
     files : str, path, or sequence of these
-        Hub loads: files (.out, .outb of OpenFAST, or .csv), folders, or patterns as
+        Hub loads: files (.out, .outb, .csv, or of other programs), folders, or patterns as
         ``"outputs/*.outb"``.
     site : Site or None
         Whose winds weight the files; without one they repeat for ever.

@@ -139,13 +139,13 @@ def transient(
         them.
     event : str
         "stop" (emergency stop with brake), "grid_loss", "dip" (of the voltage), "run_up", "offset"
-        (of the generator), "base" (which moves), or "operation" under histories.
+        (of the generator or the gearbox), "base" (which moves), or "operation" under histories.
     values : Mapping[str, float or str], optional
         Values of the event other than its defaults, by name: see the classes of
         `fe_drivetrain.procedure.drivetrain_events`.
     loads : str, path, or sequence of these
-        Histories of operation, or of the base's acceleration: files (.out, .outb of OpenFAST, or
-        .csv), folders, patterns.
+        Histories of operation, or of the base's acceleration: files (.out, .outb, .csv,
+        or of other programs), folders, patterns.
     level : str, optional
         "torsional", "rigid" or "flexible", or the name of a condensed level; all are run and
         compared where left out. All but the torsional one have the gearbox's housing on its mount

@@ -58,7 +58,7 @@ class ExportResult(Result):
     drivetrain : Drivetrain or Component
         What it is of.
     kind : str
-        Which of `Kind`.
+        A word of `Kind`.
     content : Content
         For a function of `fe_drivetrain.export` that writes it; not part of the JSON.
     points : tuple[str, ...]

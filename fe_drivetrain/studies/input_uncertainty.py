@@ -43,7 +43,7 @@ class UncertaintyResult(Result):
     Attributes
     ----------
     effects : InputEffects
-        What the uncertain values do to each quantity: digests of the samples, no samples.
+        What the uncertain values do to each quantity: statistics of the samples, no samples.
     """
 
     STUDY: ClassVar[str] = "uncertainty"

@@ -170,8 +170,8 @@ def loads(
     Parameters
     ----------
     files : str, path, or sequence of these
-        Hub loads of any length and step: files (.out, .outb of OpenFAST, or .csv), folders, or
-        patterns as ``"outputs/*.outb"``.
+        Hub loads of any length and step: files (.out, .outb, .csv, or of other programs),
+        folders, or patterns as ``"outputs/*.outb"``.
     options : LoadOptions or None
         How they are read and counted; None takes all defaults.
     target : CaptureTarget or None

@@ -123,8 +123,8 @@ def validate(project: Project, folder: Path, *, report: Progress = silent) -> Va
     Raises
     ------
     InputError
-        A file that the project names is faulty, or it names a system, drivetrain that there
-        is not.
+        A file that the project names is faulty, or it names a system or drivetrain that
+        does not exist.
     """
     found, steps = Findings(), Steps(report)
     found.seed = None

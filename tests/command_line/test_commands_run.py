@@ -123,7 +123,7 @@ def test_the_current_folder_can_be_the_result_folder(
         (("run", "tiny", "--out", "x" * 300), "folder"),
         (("run", "tiny", "--out", "loop/x"), "folder"),
         (("run",), "Missing"),
-        (("run", "tiny", "--all"), "drop one of the two"),
+        (("run", "tiny", "--all"), "leave one of the two out"),
         (("run", "tiny", "nothing"), "group/tiny"),
         (("run", "tiny", "other", "--out", "file"), "folder"),
         (("walk",), "No such command"),

@@ -143,7 +143,7 @@ def test_a_spring_below_round_off_is_refused_by_name(spherical_mesh):
     """The same limit for the scene as it is read, and for the whole model."""
     scene = coarse_scene("spherical")
     gearbox = scene.gearbox.model_copy(update={"stiffness": (4e6, 8e7, 8e7, 1e-6, 0, 0)})
-    refused = "mechanism but for round-off: shaft and main_bearing can nearly turn about x"
+    refused = "mechanism within round-off: shaft and main_bearing can nearly turn about x"
     with pytest.raises(InputError, match=refused):
         build_model(scene.model_copy(update={"gearbox": gearbox}), spherical_mesh)
     with pytest.raises(InputError, match=refused):

@@ -24,7 +24,7 @@ FAULTS = {
     "no gearbox": (["gearbox.stiffness=[0,0,0,0,0,0]"], "turn freely about y through (0, 0, 0) m"),
     "no vertical spring": (["gearbox.stiffness.2=0"], "turn freely about y"),
     "no torque reaction": (["gearbox.stiffness.3=0"], "turn freely about x"),
-    "spring of round-off": (["gearbox.stiffness.2=1e-5"], "mechanism but for round-off"),
+    "spring of round-off": (["gearbox.stiffness.2=1e-5"], "mechanism within round-off"),
     "spring of nothing": (["gearbox.stiffness.2=1e-300"], "from 1e-06 to 1e+16"),
     "opening": (
         ["shaft.sections.0.outer_diameter=0.55"],

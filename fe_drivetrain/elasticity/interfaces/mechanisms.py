@@ -232,7 +232,7 @@ def warn_of_weak_restraints(
     lost = [motion for motion in found if motion.ratio < _EPSILON]
     if lost:
         raise InputError(
-            "the scene is a mechanism but for round-off: "
+            "the scene is a mechanism within round-off: "
             + "; ".join(map(str, lost))
             + f": give the spring there at least {WEAK:g} of that stiffness, or hold it rigidly"
         )

@@ -238,8 +238,8 @@ def build_model(scene: Scene, mesh: Mesh, checked: bool = False) -> Model:
     Raises
     ------
     InputError
-        The mesh has a fault, see `elasticity.mesh.checks`; or the scene is a mechanism, or but for
-        round-off; the message names the part and its place or motion.
+        The mesh has a fault, see `elasticity.mesh.checks`; or the scene is a mechanism, exactly
+        or within round-off; the message names the part and its place or motion.
     """
     units = scene.bearing_units
     apart = [u.bearing.name for u in units if u.interface != "bonded" or u.foreign is not None]
