@@ -43,6 +43,7 @@ from .studies import LoadsResult as LoadsResult
 from .studies import ModesResult as ModesResult
 from .studies import PartResult as PartResult
 from .studies import Result as Result
+from .studies import StrengthResult as StrengthResult
 from .studies import StudyResult as StudyResult
 from .studies import TransientResult as TransientResult
 from .studies import TurningAdvice as TurningAdvice
@@ -58,6 +59,7 @@ from .studies import loads as loads
 from .studies import modes as modes
 from .studies import part as part
 from .studies import prepare_export as prepare_export
+from .studies import strength as strength
 from .studies import study as study
 from .studies import transient as transient
 from .studies import uncertainty as uncertainty

@@ -99,7 +99,7 @@ def test_the_examples_find_what_they_say(names: Names) -> None:
     assert 0 < years["L10mr"] < float("inf")
     assert {result.STUDY for result in names.values() if isinstance(result, Result)} == {
         *("check", "study", "advise", "advise_turning", "loads", "life", "modes", "gears"),
-        *("transient", "compare", "uncertainty", "validate", "part", "export"),
+        *("transient", "compare", "uncertainty", "validate", "part", "export", "strength"),
     }
 
 
