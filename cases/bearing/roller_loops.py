@@ -283,7 +283,7 @@ def zones_and_edges(page: Page, bearing: Bearing, loads: Floats, every: int) -> 
         rows,
     )
     page.text(
-        "The thesis reads 2 to 3 % off one row and up to 20 % off the other; both are here, the "
+        "The thesis reads one row to 2 or 3 % and the other to 20 %; both are here, the "
         "larger share at rollers that are hardly loaded. An even load is 3.3 % on each lamina."
     )
     page.data("rollers", rows)

@@ -233,7 +233,7 @@ def statements(found: Found) -> list[Record]:
     rows = [
         (
             "off-diagonal terms should be included for good fidelity (5.2.1)",
-            f"without them loads of bearings are up to {100 * all_of:.2g} % off, with them "
+            f"without them loads of bearings err by up to {100 * all_of:.2g} %, with them by "
             f"{100 * found.worst(MATRIX):.2g} %; frequencies move by up to "
             f"{100 * max(shifts(found, DIAGONAL)):.2g} %",
             "holds" if all_of > MATTERS else "does not hold",
@@ -290,7 +290,7 @@ def answer(page: Page, found: Found, level: str, own: bool) -> None:
     face = {m: found.turns[CALM, m].face_load(mesh) for m in (*LINEAR, ROLLERS)}
     page.answer(
         "What does the diagonal of a gearbox bearing's stiffness lose?",
-        f"The diagonal is up to {percent(worst)} off a bearing's load on rollers, six by six "
+        f"The diagonal errs by up to {percent(worst)} in a bearing's load on rollers, six by six "
         f"{percent(matrix)}; at planets {percent(planet)}: {ends}.",
         [
             page.value("error of loads by the diagonal [%]", 100 * worst),

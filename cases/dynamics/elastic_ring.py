@@ -101,8 +101,8 @@ def answer(page: Page, rows: list[Record]) -> None:
     names = {id(row): f"rim of {row[THICKNESS]:.0f} mm" for row in (thin, thick)}
     page.answer(
         "How thin may the rim of a ring gear be for a rigid ring to hold?",
-        f"A rim of {thin[THICKNESS]:.0f}\u00a0mm takes {-thin[LOWEST]:.0f}\u00a0% off the lowest "
-        f"frequency with a rigid ring, one of {thick[THICKNESS]:.0f}\u00a0mm "
+        f"A rim of {thin[THICKNESS]:.0f}\u00a0mm lowers the lowest frequency of a "
+        f"rigid ring by {-thin[LOWEST]:.0f}\u00a0%, one of {thick[THICKNESS]:.0f}\u00a0mm "
         f"{-thick[LOWEST]:.1f}\u00a0%.",
         [
             *(

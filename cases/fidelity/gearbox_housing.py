@@ -133,7 +133,7 @@ def answer(page: Page, compared: Compared, rigid: float, softer: float) -> None:
     models, errors = compared.ladder.models, compared.errors[0]
     error, band = 100 * errors[compared.chosen], 100 * compared.own
     chosen, times = models[compared.chosen], compared.ladder.seconds
-    enough = f"the {chosen.title} is enough, {value_text(error, '%', band, False)} off"
+    enough = f"the {chosen.title} is enough, to {value_text(error, '%', band, False)}"
     if chosen is compared.ladder.top:
         enough = f"only the solid is within {100 * TOLERANCE:g}\u00a0%"
     page.answer(
@@ -171,8 +171,8 @@ def answer(page: Page, compared: Compared, rigid: float, softer: float) -> None:
         ],
     )
     page.say(
-        f"As the gearbox springs of {SCENE}, whose gearbox is held about x, the suspension takes "
-        f"{softer:.2g} % off the hub's torsional stiffness."
+        f"As the gearbox springs of {SCENE}, whose gearbox is held about x, the suspension lowers "
+        f"the hub's torsional stiffness by {softer:.2g} %."
     )
 
 

@@ -72,13 +72,13 @@ def _verdict(result: AdviseResult, asked: str) -> str:
         verdict = f"Only {_name(top)} gives {asked} within {share}"
         if nearest is None:
             return f"{verdict}, to {own}."
-        return f"{verdict}; {_name(nearest)} may be {_most(nearest, top)} off."
+        return f"{verdict}; {_name(nearest)} may err by {_most(nearest, top)}."
     name = _name(chosen)
     if chosen.error < _ROUND_OFF:
-        off = "the best model agrees to round-off"
+        error = "the best model agrees to round-off"
     else:
-        off = f"at most {_most(chosen, top)} off"
-    return f"{name[0].upper()}{name[1:]} is enough for {asked}: {off}, {share} allowed."
+        error = f"its error is at most {_most(chosen, top)}"
+    return f"{name[0].upper()}{name[1:]} is enough for {asked}: {error}, {share} allowed."
 
 
 def _most(one: LevelResult, top: LevelResult) -> str:

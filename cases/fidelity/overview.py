@@ -80,8 +80,8 @@ def answer(page: Page, found: list[Compared]) -> None:
     page.answer(
         "For which shafts is a beam enough?",
         f"Beams are within {100 * BEARABLE:g}\u00a0% in bending for {len(enough[bending])} of "
-        f"{len(found)} shafts, in torsion for {len(enough[torsion])}; at worst "
-        f"{formatted(100 * worst_bending.changes[bending].beam, 2)}\u00a0% off "
+        f"{len(found)} shafts, in torsion for {len(enough[torsion])}; the worst errs by "
+        f"{formatted(100 * worst_bending.changes[bending].beam, 2)}\u00a0% "
         f"({titled(worst_bending.scene)}).",
         [
             *(

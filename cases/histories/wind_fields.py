@@ -135,7 +135,7 @@ def answer(page: Page, rows: list[Record], enough: list[Record], finest: int) ->
     page.answer(
         "How fine a grid of wind do hub loads need?",
         f"{found} the equivalent load of My within {100 * ENOUGH:g}\u00a0%; with "
-        f"{float(first[points]):.2g} it is {float(first[damage]):.2g}\u00a0% off.",
+        f"{float(first[points]):.2g} it errs by {float(first[damage]):.2g}\u00a0%.",
         [
             page.value(
                 f"equivalent load of My, error with {last[points]:.2g} points [%]",

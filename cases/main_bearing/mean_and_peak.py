@@ -174,8 +174,8 @@ def answer(page: Page, found: dict[str, Quantity], agree: list[int], less: Float
         f"All {always} statements of the thesis on order hold."
         if holds
         else f"Of {len(agree)} statements of the thesis on order, {always} hold everywhere, "
-        f"{mostly - always} mostly, {len(agree) - mostly} do not; tilting stiffness takes "
-        f"{less[LOW]:.0f} % off the peak force.",
+        f"{mostly - always} mostly, {len(agree) - mostly} do not; tilting stiffness "
+        f"lowers the peak force by {less[LOW]:.0f} %.",
         [
             page.value("statements that hold everywhere", always, beside=len(agree), by="all"),
             page.value("statements that hold in most groups", mostly, beside=len(agree), by="all"),

@@ -97,11 +97,11 @@ REMARKS = (
     "curved P2. Tolerance is the energy error at which an iteration "
     "stops; squared, it is the error of the stiffness that belongs to the load. Errors smaller "
     "than the reference's own uncertainty are shown pale, and not ranked. What P1 is extrapolated "
-    "to is shown, not judged: 18 to 37 % off on the first meshes, it is too far from its limit. A "
-    "body that is too small and an element that is too stiff may cancel: no choice of a shaft is "
-    "credited with a smaller "
-    "error than that of its mesh's volume, and none with less than its solver leaves. The signed "
-    "errors, as computed, stand in the CSV file beside this page."
+    "to is shown, not judged: with errors of 18 to 37 % on the first meshes, it is too far from "
+    "its limit. A body that is too small and an element that is too stiff may cancel: no choice "
+    "of a shaft is credited with a smaller error than that of its mesh's volume, and none "
+    "with less than its solver leaves. The signed errors, as computed, stand in the CSV file "
+    "beside this page."
 )
 
 

@@ -172,7 +172,7 @@ def answer(
     page.answer(
         "Does a model of two inertias give the torque that a campaign measures?",
         f"Two inertias give {value_text(largest, 'kN m')} of peak torque, {apart:+.1f}\u00a0% from "
-        f"that measured, whose gain is {error:.1f}\u00a0% off.".replace("-", MINUS),
+        f"that measured, whose gain errs by {error:.1f}\u00a0%.".replace("-", MINUS),
         [
             page.value(f"{most} [kN m]", largest, beside=float(gauge.max()) / 1e3, by=by),
             page.value(f"{size} [kN m]", equivalent, beside=measured_size, by=by),

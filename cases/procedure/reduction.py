@@ -111,8 +111,8 @@ def answer(page: Page, level: Record, found: list[Influence], trials: list[Trial
         ],
         hero=BY_LEVEL,
         cautions=[
-            f"Over the whole dip {level['level']} are "
-            f"{float(level['error of the torque [%]']):.2g} % off in root mean square.",
+            f"Over the whole dip {level['level']} err by "
+            f"{float(level['error of the torque [%]']):.2g} % in root mean square.",
             "Errors are those against the finest level of the ladder, not against a measurement.",
             "Damping is assumed: the table of the machine has none.",
         ],

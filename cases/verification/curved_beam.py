@@ -78,7 +78,7 @@ def answer(page: Page) -> None:
     page.answer(
         "Which stress does the inside of a thick curved bar, as of a hook, carry?",
         f"It carries {certain_value(inside)}, and {certain_value(outside)} at its outside: a "
-        f"straight beam's formula is {by_beam:+.0f} % off inside, Winkler's for hooks "
+        f"straight beam's formula errs by {by_beam:+.0f} % inside, Winkler's for hooks by "
         f"{by_hook:+.1f} %.",
         [
             inside,

@@ -56,7 +56,7 @@ def answer(page: Page, over_cowper: float, over_even: float) -> None:
         "How far does an overhung shaft sag under its own weight?",
         f"With {RATIO:g} diameters of overhang it sags by "
         f"{value_text(-sag.value, sag.unit, sag.band, with_band=False)}; a beam with Cowper's "
-        f"shear coefficient is {percent_text(over_cowper)} off, one held evenly "
+        f"shear coefficient errs by {percent_text(over_cowper)}, one held evenly by "
         f"{percent_text(over_even)}.",
         [
             sag,

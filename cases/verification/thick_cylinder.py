@@ -48,7 +48,7 @@ def answer(page: Page, best: Record) -> None:
     page.answer(
         "How far does a thick cylinder open under internal pressure, and what does it carry?",
         f"Its bore opens by {certain_value(opens)}, {percent_text(best[ERRORS[MOVED]])} from Lame, "
-        f"with a hoop stress of {certain_value(stress)}, {percent_text(best[ERRORS[HOOP]])} off.",
+        f"with a hoop stress of {certain_value(stress)}, to {percent_text(best[ERRORS[HOOP]])}.",
         [
             opens,
             stress,

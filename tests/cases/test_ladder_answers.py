@@ -48,13 +48,13 @@ def test_questions_and_quantities_are_each_scenes_own() -> None:
 def test_a_level_below_the_last_has_that_ones_own_error_on_top() -> None:
     verdict = ladder_answers._verdict(found(1, (0.3, 0.01), 0.02), "the force")
     assert verdict == (
-        "The meridian in harmonics with housings as springs is enough for the force: at most "
-        "3\u00a0% off, 5\u00a0% allowed."
+        "The meridian in harmonics with housings as springs is enough for the force: its "
+        "error is at most 3\u00a0%, 5\u00a0% allowed."
     )
     verdict = ladder_answers._verdict(found(2, (0.3, 0.1), 0.02), "the force")
     assert verdict == (
         "Only the assembly of solids gives the force within 5\u00a0%; the meridian in harmonics "
-        "with housings as springs may be 12\u00a0% off."
+        "with housings as springs may err by 12\u00a0%."
     )
     assert "may err by 7" in ladder_answers._verdict(found(None, (0.3, 0.1), 0.07), "the force")
 
