@@ -406,6 +406,18 @@ def test_a_band_is_of_the_inputs_and_stands_beside_the_error(uncertain: Uncertai
     assert [row["quantity"] for row in uncertain.all_tables()["bands"]] == list(uncertain.bands)
 
 
+def test_what_statics_decide_is_certain_in_words() -> None:
+    """The gearbox's share of a moment: no stiffness is in it, but for round-off."""
+    scene = change_scene(
+        library_scene("three_point_suspension"),
+        {"uncertainty": {"gearbox.stiffness.1": {"uniform": 0.05}}},
+    )
+    found = uncertainty(scene, ["gearbox.Fz"], {"hub.My": 1e6}, level=1, samples=40)
+    assert found.answer.verdict.endswith(
+        "0\u00a0% to 0\u00a0% by its inputs and ±\u00a00\u00a0% by the model."
+    )
+
+
 def test_no_samples_of_uncertain_values_are_in_the_json(uncertain: UncertaintyResult) -> None:
     found = uncertain.to_dict()
     assert found["tables"]["samples"] == found["options"]["samples"] == 40
