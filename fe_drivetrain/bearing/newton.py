@@ -330,17 +330,6 @@ def _is_near(B: Floats, load: Floats, before: Floats) -> bool:
     return change < 0.25 * whole
 
 
-@njit(cache=True, error_model="numpy")
-def _unknowns_of(B: Floats, u: Floats, w: Floats) -> None:
-    """Unknowns w of a displacement u = B w, whose columns are orthogonal."""
-    for j in range(len(w)):
-        along, size = 0.0, 0.0
-        for k in range(5):
-            along += B[k, j] * u[k]
-            size += B[k, j] ** 2
-        w[j] = along / size
-
-
 @njit(cache=True, nogil=True, error_model="numpy")
 def solve_cases(cases: Cases, bearing: Packed, method: Method, found: Found) -> None:
     """Equilibrium of many load cases, each started from the case before it where that is close.
@@ -362,10 +351,10 @@ def solve_cases(cases: Cases, bearing: Packed, method: Method, found: Found) -> 
     total = -1.0
     for i in range(len(loads)):
         B = cases.bases[i if len(cases.bases) > 1 else 0]
-        near = method.warm and i > 0 and _is_near(B, loads[i], loads[i - 1])
-        if near:
-            _unknowns_of(B, u[i - 1], w)
-        else:
+        # unknowns of the case before, and forces there, are those of one basis alone
+        near = method.warm and i > 0 and len(cases.bases) == 1
+        near = near and _is_near(B, loads[i], loads[i - 1])
+        if not near:
             w[:] = cases.guesses[i]
         found.steps[i], found.evaluations[i], found.residuals[i], total = _newton(
             loads[i],

@@ -385,11 +385,7 @@ def infeasible(problem: Problem, near: Floats) -> InputError:
     sign = -1.0 if problem.limits[int(shares.argmax())].at_least else 1.0
     violation = sign * float(np.expm1(sign * violation))  # of limits the logarithm is taken
     conflict = [str(problem.limits[n]) for n in np.flatnonzero(shares > 1e-3)]
-    values = problem.trials.values_at(worst.at)
-    nearest = ", ".join(
-        f"{key}={value:.6g}" if isinstance(value, float) else f"{key}={value}"
-        for key, value in values.items()
-    )
+    nearest = problem.trials.in_words(worst.at)
     ends = [
         f"{key} is at the {'lower' if end < 0 else 'upper'} end of its range"
         for key, end in zip(problem.trials.asked.request.ranges, worst.at_ends, strict=True)

@@ -326,7 +326,10 @@ def _corrected(one: _Candidate, tolerance: float, report: Callable[[str], object
             )
         except InputError as error:
             if best is None:
-                raise
+                raise InputError(
+                    f"the least design of the cheap level, {trials.in_words(minimum.at)}, cannot "
+                    f"be built at the level that is enough: make ranges narrower ({error})"
+                ) from error
             why = f"the better level cannot build the next design: {error}"
             break
         cheap = trials.quantities(minimum.at)

@@ -69,6 +69,19 @@ class DesignTrials:
         """Number of designs that could not be built."""
         return sum(row is None for row in self._known.values())
 
+    def in_words(self, at: Floats) -> str:
+        """A design by its values, as in "KEY=0.2, OTHER=rigid".
+
+        Parameters
+        ----------
+        at : ndarray, (d,)
+            See `values_at`.
+        """
+        return ", ".join(
+            f"{key}={value:.6g}" if isinstance(value, float) else f"{key}={value}"
+            for key, value in self.values_at(at).items()
+        )
+
     def values_at(self, at: Floats) -> dict[str, Any]:
         """Values of all that varies, by key.
 

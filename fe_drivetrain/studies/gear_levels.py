@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.machine_table import MachineTable
 from fe_drivetrain.dynamics.bodies.advice import Rung
@@ -180,10 +181,16 @@ class LoadSpread:
         forces: Floats,
     ) -> Spread:
         each = forces.sum(axis=2)
-        share = each / each.mean(axis=1, keepdims=True)
-        mean = np.where(each > 0.0, each, 1.0)[..., None] / forces.shape[2]
-        face = np.where(each[..., None] > 0.0, spread_at_ends(forces) / mean, 1.0)
+        mean = each.mean(axis=1, keepdims=True)
         added, (torque, speed, application) = 0.0, at
+        if not mean.all():
+            raise InputError(
+                f"{name}: a torque of the rotor of {torque:g} N m is lost in the round-off of the "
+                "weights beside it, and no tooth carries load in statics: give a larger torque"
+            )
+        share = each / mean
+        slices = np.where(each > 0.0, each, 1.0)[..., None] / forces.shape[2]
+        face = np.where(each[..., None] > 0.0, spread_at_ends(forces) / slices, 1.0)
         if name in self._stresses:
             start = LoadFactors(application, float(share.max()))
             added = self._stresses[name].misaligned(torque, speed, start) - 1.0

@@ -329,7 +329,8 @@ def _ladder(model: LossModel, hub: Floats, speed: Floats, seconds: Floats) -> tu
     energies = {name: _energy(losses, seconds) for name, (losses, _) in rows.items()}
     best = energies[ANSWER]
     return tuple(
-        LossLevel(name, losses, spent, energies[name], energies[name] / best - 1.0)
+        # a rotor that stands in all classes makes no heat by any level
+        LossLevel(name, losses, spent, energies[name], energies[name] / best - 1.0 if best else 0.0)
         for name, (losses, spent) in rows.items()
     )
 

@@ -35,6 +35,9 @@ from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.shown_units import in_large_unit, quantity_in_words
 from fe_drivetrain.studies.turning_uncertainty import TurningSamples, turning_study
 
+ROUND_OFF = 1e-11
+"""Share of a value below which what inputs or the model change is none: round-off of statics."""
+
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class UncertaintyResult(Result):
@@ -221,11 +224,10 @@ def _answer(found: Findings, effects: InputEffects, tolerance: float) -> None:
     first = max(by_load or effects.charted[:1], key=lambda one: abs(one.nominal))
     others = [one for one in effects.charted if one is not first]
     name = quantity_in_words(first.name)
-    ends = [100.0 * (end / first.nominal - 1.0) for end in (first.band.low, first.band.high)]
     error = 200.0 * first.half_error
-    low, high = (value_text(end, "%", error, False) for end in (min(ends), max(ends)))
+    low, high = (value_text(end, "%", error, False) for end in _ends(first))
     value = found.value(*_nominal(first))
-    model = f"{formatted(100.0 * first.error.share, 2)}\u00a0%"
+    model = f"{formatted(_percent(first.error.share), 2)}\u00a0%"
     figures = [value, *_uncertainties(found, first, effects, tolerance)]
     if first.changes:
         key = list(first.changes)[-1]
@@ -240,6 +242,17 @@ def _answer(found: Findings, effects: InputEffects, tolerance: float) -> None:
         f"and ±\u00a0{model} by the model.",
         figures,
     )
+
+
+def _ends(one: QuantityEffects) -> tuple[float, float]:
+    """Ends of a band over the nominal value, less 1 [%]."""
+    ends = [_percent(end / one.nominal - 1.0) for end in (one.band.low, one.band.high)]
+    return min(ends), max(ends)
+
+
+def _percent(share: float) -> float:
+    """A share in percent; none where it is round-off, as of what statics alone decide."""
+    return 100.0 * share if abs(share) > ROUND_OFF else 0.0
 
 
 def _nominal(one: QuantityEffects) -> tuple[str, float, float]:
@@ -306,11 +319,11 @@ def _sentences(found: InputEffects) -> list[str]:
     """The answer: the band of each quantity that was asked for, and the error of the model."""
     sentences = []
     for one in found.charted:
-        low, high = (100 * (end / one.nominal - 1.0) for end in (one.band.low, one.band.high))
+        low, high = _ends(one)
         sentences.append(
-            f"{one.name}: {one.nominal:.4g} {one.unit}, {min(low, high):+.2g} to "
-            f"{max(low, high):+.2g} % from the inputs ({100 * SHARE:g} % of {found.samples} "
-            f"samples), ± {100 * one.error.share:.2g} % from the model at level {found.level}."
+            f"{one.name}: {one.nominal:.4g} {one.unit}, {low:+.2g} to {high:+.2g} % from the "
+            f"inputs ({100 * SHARE:g} % of {found.samples} samples), "
+            f"± {_percent(one.error.share):.2g} % from the model at level {found.level}."
         )
     return sentences
 

@@ -11,6 +11,7 @@ import numpy as np
 from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.drivetrain_file.reading import with_sections
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.plots import figures
 from fe_drivetrain.plots.figures import MINIMUM, error_traces
@@ -135,6 +136,7 @@ def advise(
     InputError
         The quantity or a load is unknown, or the quantity is zero at the highest level.
     """
+    scene = with_sections(scene, scene.title)
     found, steps = Findings(), Steps(report)
     found.seed = None
     found.about(scene)

@@ -11,6 +11,7 @@ from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
+from fe_drivetrain.drivetrain_file.reading import with_sections
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.charts import chart, trace
 from fe_drivetrain.report.results import Chart
@@ -197,6 +198,8 @@ def loads(
         There is no file, one cannot be read, all hold zeros alone, a site is given and files have
         no wind speed, transients are given without a site, or no wind has histories of both sets.
     """
+    if scene is not None:
+        scene = with_sections(scene, scene.title)
     asked = _Asked(
         recorded_files(files),
         options or LoadOptions(),

@@ -79,7 +79,7 @@ class Turning:
     ratio : float
         Speed of the generator over that of the rotor, without sign.
     first_torsional : float
-        First frequency of torsion above zero, generator free [Hz].
+        First frequency of torsion above zero, generator free, of a grid too [Hz].
     degrees : Mapping[str, int]
         Degrees of freedom of each level that the file allows, by its name.
     """

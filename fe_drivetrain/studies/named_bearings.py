@@ -116,6 +116,7 @@ def entry_of(name: str, named: Named, known: Mapping[str, Entry]) -> Entry:
     if named not in known:
         raise InputError(
             f"catalogue entry {shown(named)} of bearing {name!r} is in no catalogue: give a file "
-            f"that has it with {argument('catalogues', ['FILE'])}, or use one of {', '.join(known)}"
+            f"that has it with {argument('catalogues', ['FILE'])}, what a catalogue's page prints, "
+            f"as in {{designation: {named}, C: ..., C0: ...}}, or use one of {', '.join(known)}"
         )
     return known[named]

@@ -240,7 +240,7 @@ def _turning_figures(found: Findings, turning: Turning) -> tuple[KeyFigure, KeyF
     return (
         found.value("ratio of all stages", turning.ratio),
         found.value(
-            "first torsional frequency, of torsion alone, generator free [Hz]",
+            "first torsional frequency, of torsion alone, generator free of its grid [Hz]",
             turning.first_torsional,
         ),
     )

@@ -12,6 +12,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.left_out import left_out
+from fe_drivetrain.drivetrain_file.reading import with_sections
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.drivetrain_file.without_weight import weightless
 from fe_drivetrain.report.charts import bars
@@ -234,6 +235,7 @@ def study(
         The scene cannot be solved, a slope is out of range, the loads are refused, or the scene
         has no K_R at a seat.
     """
+    scene = with_sections(scene, scene.title)
     for slope in slopes:
         check_slope(slope)
     if seat:

@@ -32,7 +32,7 @@ class ByInstant:
     delays : tuple of float
         How much later the brake comes [s].
     peaks : tuple of float
-        Largest value for each, over the rated one.
+        Largest size for each, of either sign, over the rated one.
     """
 
     channel: str
@@ -67,6 +67,8 @@ def by_instant(of: Prepared, event: Event, channel: str, step: float) -> ByInsta
         end = max(braked + event.rise + AFTER * period, event.pitched + 1e-3)
         planned = replace(event, braked=braked).plan(of.of, end, of.rated.slip)
         run = of.event(planned, step, counts=False)
-        after = run.samples.times >= braked
-        peaks.append(peak_between(run.samples.values[after, k]) / float(of.channels.rated[k]))
+        values = run.samples.values[run.samples.times >= braked, k]
+        # a brake between rotor and gears winds what is behind it up backwards
+        largest = max(peak_between(values), peak_between(-values))
+        peaks.append(largest / abs(float(of.channels.rated[k])))
     return ByInstant(channel, period, delays, tuple(np.asarray(peaks).tolist()))

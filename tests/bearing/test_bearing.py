@@ -254,6 +254,7 @@ def every_kind() -> list[Bearing]:
         Bearing(
             "angular", tuple(ball_row(16, 0.03, 0.3, a, -0.02 * np.sign(a)) for a in (-40, 40))
         ),
+        Bearing("single tapered", S.rows[:1]),
     ]
 
 
@@ -615,6 +616,18 @@ def test_a_series_started_from_the_step_before_is_the_same_as_from_nothing() -> 
     assert warm.evaluations.sum() < 0.8 * cold.evaluations.sum()
     one = [equilibrium(S, f, warm=False).displacements[0] for f in F[::300]]
     assert_allclose(cold.displacements[::300], one, rtol=1e-12, atol=0)
+
+
+@pytest.mark.parametrize("bearing", every_kind(), ids=lambda b: b.name)
+def test_a_load_that_stays_leaves_the_rollers_as_they_are(bearing: Bearing) -> None:
+    """Tilt and shift of a single row belong together: a start must not take one for the other."""
+    u = 1e-4 * np.array([1.0, 0.4, -0.8, 0.3 / bearing.arm, 0.2 / bearing.arm])
+    F = np.repeat(forces(bearing, u)[0], 6, axis=0)
+    found = equilibrium(bearing, F)
+    assert found.converged.all()
+    arms = np.array([1, 1, 1, bearing.arm, bearing.arm])
+    assert np.abs(found.unbalanced / arms).max() <= 1e-7 * np.abs(F / arms).max()
+    assert_allclose(found.displacements, found.displacements[:1].repeat(6, axis=0), rtol=1e-12)
 
 
 # what a user can get wrong

@@ -13,7 +13,9 @@ from fe_drivetrain.dynamics.bodies.equations import (
     steady,
     varying,
 )
+from fe_drivetrain.dynamics.time import newton_steps
 from fe_drivetrain.dynamics.time.exponential import exponential_steps
+from fe_drivetrain.dynamics.time.law_loops import RESIDUAL
 
 
 def test_a_mass_under_a_ramp_is_exact_in_one_step() -> None:
@@ -102,3 +104,24 @@ def test_messages(values: dict[str, float], message: str) -> None:
     given = {"duration": 1.0, "dt": 0.1, "every": 1} | values
     with pytest.raises(InputError, match=message):
         exponential_steps(equations, loads, **given)  # type: ignore[arg-type]
+
+
+def test_a_motion_that_is_no_number_has_not_converged() -> None:
+    springs = spring_laws(
+        [[1.0], [1.0]], [10.0, 1e3], [0.1, 0.0], lower=[0.0, -0.1], upper=[0.0, 0.1]
+    )
+    equations = equations_of_motion([1.0], springs)
+    found = exponential_steps(equations, steady([0.0]), 1.0, 0.25, started([np.nan], [0.0]))
+    assert found.not_converged == 4
+
+
+def test_a_residual_that_is_no_number_is_beyond_any_tolerance() -> None:
+    """Of rollers, which the largest residual of a step decides."""
+    values = np.zeros((13, 3))
+    values[RESIDUAL] = [1e-9, np.nan, 1e-9]
+    assert newton_steps._unbalance.py_func(np.zeros((13, 3)), values) == np.inf
+
+
+def test_loads_over_time_are_numbers() -> None:
+    with pytest.raises(InputError, match="no numbers"):
+        varying([1.0], [0.0, 0.5, 1.0], [0.0, np.nan, 1.0])

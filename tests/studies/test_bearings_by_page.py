@@ -28,6 +28,7 @@ from fe_drivetrain.shafts.uncertainty.sampling import sample
 from fe_drivetrain.studies.bearing_lives import LifeResult, life
 from fe_drivetrain.studies.life_inside import insides_of
 from fe_drivetrain.studies.life_options import LifeOptions
+from fe_drivetrain.studies.named_bearings import entry_of
 from fe_drivetrain.studies.rolling_bearings import OneBearing
 from fe_drivetrain.studies.turning_uncertainty import (
     TurningSamples,
@@ -197,3 +198,8 @@ def test_a_life_is_as_uncertain_as_the_inside_of_its_bearing() -> None:
         assert any("Samples draw one of the insides" in one for one in found.notes) == (page is NU)
     assert scatter[0] > 0.05
     assert scatter[1] < 1e-9
+
+
+def test_a_designation_without_its_ratings_asks_for_the_page() -> None:
+    with pytest.raises(InputError, match=r"as in \{designation: 230/500, C: \.\.\., C0"):
+        entry_of("rear", "230/500", {})

@@ -200,6 +200,19 @@ def test_what_cannot_be_built_is_rejected_and_what_has_not_settled_is_said(
     assert any("could not be built and were rejected" in note for note in other.notes)
 
 
+def test_a_design_that_the_better_level_cannot_build_is_named(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refused(*given: Any) -> None:
+        raise InputError("no mesh of it")
+
+    monkeypatch.setattr(design_search, "checked_quantities", refused)
+    vary = {"shaft.sections.0.inner_diameter": (0.02, 0.3)}
+    words = r"inner_diameter=0.3, cannot be built .* make ranges narrower \(no mesh of it\)"
+    with pytest.raises(InputError, match=words):
+        search(_stepped(), design_request(vary, "mass", ["deflection<=9 mm"], load=LOAD), 0.9, 1)
+
+
 def test_a_limit_of_frequency_is_met() -> None:
     scene = read_drivetrain("iea_15mw_main_shaft", {})
     key = "shaft.sections.0.inner_diameter"

@@ -120,6 +120,18 @@ def test_the_peak_of_a_stop_is_one_of_those_by_the_instant_of_the_brake(
     assert max(found.peaks) > 1.2 * min(found.peaks)
 
 
+def test_a_torque_that_a_brake_reverses_counts_by_the_instant_of_the_brake() -> None:
+    """A disc at the rotor: what is behind winds the shaft up backwards."""
+    values = {"off": 0.1, "pitched": 0.2, "braked": 0.5, "rise": 0.0, "brake": 6.0}
+    found = transient(two_masses(), "stop", {**values, "shaft": "rotor"}, damage=None)
+    assert found.by_instant is not None
+    later = found.samples.times >= 0.5
+    first = found.samples.times < 0.5 + 2.5 * found.by_instant.period
+    own = found.samples.of("torque of shaft")[later & first] / TORQUE
+    assert -own.min() > 1.1 * own.max()
+    assert_allclose(found.by_instant.peaks[0], -own.min(), rtol=1e-4)
+
+
 def test_assumed_values_of_the_event_are_stated_and_given_ones_are_not(
     stopped: TransientResult,
 ) -> None:

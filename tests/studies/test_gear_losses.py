@@ -65,6 +65,15 @@ def test_at_standstill_nothing_is_lost_and_friction_holds(losses: DrivetrainLoss
     assert np.isnan(of.efficiency[still]).all()
 
 
+def test_a_rotor_that_stands_all_the_time_makes_no_heat_over_the_life() -> None:
+    drivetrain = read_drivetrain("grc_750kw")
+    stood = gears(drivetrain, options=OPTIONS, spectrum=[(9e4, 10.0, 0.0), (5e4, 10.0, 0.0)])
+    assert stood.losses is not None
+    assert [one.energy for one in stood.losses.levels] == 4 * [0.0]
+    assert [one.difference for one in stood.losses.levels] == 4 * [0.0]
+    assert life_efficiency(stood.losses) is None
+
+
 def test_reversed_power_is_lost_on_its_way_to_the_rotor(losses: DrivetrainLosses) -> None:
     of = losses.answer.losses
     motored = of.torque < 0.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from math import cos, pi, radians, sqrt, tan
 from pathlib import Path
 from typing import Any
@@ -15,11 +16,12 @@ from fe_drivetrain.cases.references.rated_gears import rated_meshes
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.named_scenes import read_drivetrain
+from fe_drivetrain.dynamics.bodies.condensed_rungs import plain_rungs
 from fe_drivetrain.dynamics.bodies.levels import Level
 from fe_drivetrain.dynamics.bodies.machine import machine_of
 from fe_drivetrain.dynamics.bodies.mesh_loads import MeshResponses
 from fe_drivetrain.gear.load_factors import LoadFactors, face_factor, resonance_speed
-from fe_drivetrain.studies.gear_levels import Spread
+from fe_drivetrain.studies.gear_levels import LoadSpread, Spread
 from fe_drivetrain.studies.gear_machine import gear_train
 from fe_drivetrain.studies.gear_meshes import gear_meshes
 from fe_drivetrain.studies.gear_options import GearOptions
@@ -479,6 +481,18 @@ def test_a_planet_that_hardly_carries_makes_no_face_load_factor() -> None:
     face = np.array([[[1.2, 0.8], [1.0, 1.0], [1.9, 0.1]]])
     spread = Spread(np.zeros(1), share, face)
     assert spread.sharing * spread.face_load == pytest.approx(1.9 * 1.2)
+
+
+def test_a_mesh_that_carries_nothing_has_no_spread(small: Drivetrain) -> None:
+    """As where a torque is round-off of the weights beside it."""
+    machine = machine_of(small)
+    rung = plain_rungs(small, machine)[-1]
+    spread = LoadSpread(machine, {}, rung, 2, 3, True, TORQUE)
+    found = spread.statics(TORQUE, np.zeros(6))
+    assert found is not None
+    none = replace(found, slices={name: 0.0 * of for name, of in found.slices.items()})
+    with pytest.raises(InputError, match=r"torque of the rotor of 50000 N m .* a larger torque"):
+        spread.spread(none, TORQUE, SPEED)
 
 
 @pytest.mark.parametrize(

@@ -148,6 +148,19 @@ def test_a_spectrum_of_one_class_is_the_load_that_stays(
         assert found.sections[name].fatigue.value == pytest.approx(one.fatigue.value, rel=3e-3)
 
 
+def test_a_class_without_a_turn_takes_nothing_from_the_life(scene: Scene) -> None:
+    """A parked shaft may carry a mean that no cycle endures: that is for its static safety."""
+    others = {name: value for name, value in HUB.items() if name != "Mx"}
+    turning = (HUB["Mx"], 1e4, 1.5)
+    alone = strength(scene, options=RIGID, hub=others, spectrum=[turning])
+    parked = strength(scene, options=RIGID, hub=others, spectrum=[turning, (4e6, 1e3, 0.0)])
+    for name, one in alone.sections.items():
+        assert parked.sections[name].damage == pytest.approx(one.damage, rel=1e-12)
+        assert parked.sections[name].fatigue.value == pytest.approx(one.fatigue.value, rel=1e-12)
+    worst = min(one.static.value for one in parked.sections.values())
+    assert worst < 0.5 * min(one.static.value for one in alone.sections.values())
+
+
 def test_what_is_missing_is_named(scene: Scene, tmp_path: Path) -> None:
     plain = library_scene("three_point_suspension")
     with pytest.raises(InputError, match="states no strength of its main shaft"):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from answer_rules import broken_by, broken_rules
 from coarse_scenes import coarse_scene
-from small_drivetrain import two_masses
+from small_drivetrain import GENERATOR, two_masses
 from small_project import OWN, Content, small_project
 from test_commands_life import write_history
 from test_scene_study import HISTORIES
@@ -333,6 +333,36 @@ def test_a_drivetrain_without_sections_is_checked_by_what_turns() -> None:
     assert any("lengths of shafts" in row.source for row in found.assumptions)
 
 
+@pytest.mark.parametrize(
+    "asked",
+    [
+        lambda drivetrain, file: study(drivetrain),
+        lambda drivetrain, file: advise(drivetrain, "main_bearing.Fz"),
+        lambda drivetrain, file: loads(file, scene=drivetrain),
+    ],
+)
+def test_what_needs_a_shaft_with_sections_refuses_one_without(
+    asked: Callable[[Any, Path], object], tmp_path: Path
+) -> None:
+    file = tmp_path / "a.csv"
+    write_history(file, 8.0)
+    with pytest.raises(InputError, match="the main shaft has no sections, which this needs"):
+        asked(two_masses(), file)
+
+
+def test_a_grid_that_holds_the_generator_is_not_in_the_frequency_of_check() -> None:
+    """`modes` has it: its first mode is then another one, and the name says so."""
+    one = {"inertia": GENERATOR}
+    free, held = (check(two_masses(generator=one | of)) for of in ({}, {"stiffness": 1e5}))
+    for found in (free, held):
+        figures = found.answer.figures
+        (figure,) = [one for one in figures if one.name.startswith("first torsional")]
+        assert figure.name.endswith("generator free of its grid")
+        assert found.turning is not None
+        assert free.turning is not None
+        assert found.turning.first_torsional == pytest.approx(free.turning.first_torsional)
+
+
 def test_a_figure_is_found_by_its_name(compared: CompareResult) -> None:
     for figure in compared.figures:
         assert compared[figure.quantity] is figure
@@ -374,6 +404,18 @@ def test_a_band_is_of_the_inputs_and_stands_beside_the_error(uncertain: Uncertai
     assert 0.5 * reach < half < 1.1 * reach
     assert uncertain.units.keys() == uncertain.errors.keys() == uncertain.bands.keys()
     assert [row["quantity"] for row in uncertain.all_tables()["bands"]] == list(uncertain.bands)
+
+
+def test_what_statics_decide_is_certain_in_words() -> None:
+    """The gearbox's share of a moment: no stiffness is in it, but for round-off."""
+    scene = change_scene(
+        library_scene("three_point_suspension"),
+        {"uncertainty": {"gearbox.stiffness.1": {"uniform": 0.05}}},
+    )
+    found = uncertainty(scene, ["gearbox.Fz"], {"hub.My": 1e6}, level=1, samples=40)
+    assert found.answer.verdict.endswith(
+        "0\u00a0% to 0\u00a0% by its inputs and ±\u00a00\u00a0% by the model."
+    )
 
 
 def test_no_samples_of_uncertain_values_are_in_the_json(uncertain: UncertaintyResult) -> None:

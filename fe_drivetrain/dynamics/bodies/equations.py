@@ -377,6 +377,8 @@ def varying(pattern: ArrayLike, times: ArrayLike, history: ArrayLike) -> Loads:
             f"a load of {len(H)} values has {len(T)} times, but must have as many, ascending: "
             "correct them"
         )
+    if not (np.isfinite(T).all() and np.isfinite(H).all()):
+        raise InputError("a load over time has values that are no numbers: correct them")
     return Loads(
         np.ascontiguousarray(P.reshape(len(P), -1)), T, np.ascontiguousarray(H.reshape(len(T), -1))
     )

@@ -301,6 +301,8 @@ def _unbalance(
         for k in range(r):
             z = values[i, Z, k]
             rest = v[FREE, first + k] - v[FOUND, first + k] - z
+            if not np.isfinite(rest):  # the larger of a number and none is the number
+                return np.inf
             left[CHANGE, r * (i - 1) + k] = rest
             scale[k] = max(scale[k], abs(z))
             if rest != 0.0:

@@ -5,6 +5,8 @@ z = z_free - (1 - a_f) S d(z, z'),    S = R A^-1 R^T
 
 from __future__ import annotations
 
+import numpy as np
+
 from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.compiled import inner_loop
 from fe_drivetrain.dynamics.time.bearing_loops import Rolling, bearing_forces
@@ -116,6 +118,8 @@ def _unbalance(kinds: Floats, y: Floats) -> float:  # pragma: no cover - compile
     most = 0.0
     for i in range(y.shape[1]):
         size = 1.0 if kinds[PHASE_ROW, i] != 0.0 or y[SCALE, i] == 0.0 else y[SCALE, i]
+        if not np.isfinite(y[RESIDUAL, i]):  # the larger of a number and none is the number
+            return np.inf
         most = max(most, abs(y[RESIDUAL, i]) / size)
     return most
 

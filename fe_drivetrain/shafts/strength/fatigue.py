@@ -93,15 +93,17 @@ def damage_at_factors(
     Returns
     -------
     ndarray, (len(FACTORS),)
-        Infinite where a mean stress alone is not endured.
+        Infinite where cycles have a mean stress that alone is not endured.
     """
     kind = TORSION if shear else BENDING
     curve, found = rule.curve(shear), np.zeros(len(FACTORS))
+    # what never comes does no damage, whatever its mean
+    come = np.flatnonzero(cycles.counts > 0.0)
     WK, FK = strength.reversed[kind], strength.yields[kind]
     psi = strength.sensitivity[kind]
-    for rows in chunks(len(cycles.ranges), _AT_ONCE):
-        half, count = 0.5 * cycles.ranges[rows], cycles.counts[rows]
-        mean = cycles.means[rows]
+    for part in chunks(len(come), _AT_ONCE):
+        rows = come[part]
+        half, count, mean = 0.5 * cycles.ranges[rows], cycles.counts[rows], cycles.means[rows]
         normal, torsion = (beside, mean) if shear else (mean, beside)
         square = np.sign(normal) * np.square(normal) + 3.0 * np.square(torsion)
         mv = np.sqrt(np.maximum(square, 0.0)) / (np.sqrt(3.0) if shear else 1.0)
