@@ -63,7 +63,9 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
     most = _most_columns(back, K)
     row = _Row(np.empty((_PIECES, most), np.int32), np.empty((_PIECES, most * _ROOM + LANES)))
     counts = np.zeros(n, dtype=np.int32)
-    each = len(K.indices) // max(1, n_fine) + 1
+    # room for as many as a row of K P would have if it met each coarse node once: memory that is
+    # not written to costs nothing
+    each = len(K.indices) * len(forwards.indices) // max(1, n_fine**2) + 1
     parts: list[tuple[Index, Floats]] = [(counts, last)] * _PIECES
 
     def fill(piece: int) -> None:

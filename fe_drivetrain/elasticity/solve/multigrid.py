@@ -253,16 +253,19 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
     elif system.prolongation is not None:
         motions, body = system.prolongation @ motions, np.zeros(K.shape[0] // 3, dtype=np.int64)
     connected = _within_bodies(K, body) if options.apart else None
-    while K.shape[0] // K.blocksize[0] > options.coarsest and len(levels) < _MAX_LEVELS:
-        if connected is None:
-            connected = symmetric_strength_of_connection(K, options.strength)
+    K, width = in_blocks(K), 3
+    while K.shape[0] // width > options.coarsest and len(levels) < _MAX_LEVELS:
         # Six degrees of freedom an aggregate below the first level: two blocks of three.
-        blocks = in_blocks(K)
-        smoothing = _smoothing(blocks, options)
+        wide = K.tobsr((width, width))
+        if connected is None:
+            connected = symmetric_strength_of_connection(wide, options.strength)
+        smoothing = _smoothing(K, options)
         degree = options.coarse_degree if levels else options.degree
-        P, motions = coarsened(K, motions, connected, options.prolongation_smoother, *smoothing[1:])
+        P, motions = coarsened(
+            wide, motions, connected, options.prolongation_smoother, *smoothing[1:]
+        )
         levels.append(Level(*smoothing, degree, _in_rows(P), _in_rows(P.T)))
-        K, connected = coarse_product(blocks, levels[-1].prolongation).tobsr((6, 6)), None
+        K, connected, width = coarse_product(K, levels[-1].prolongation), None, 6
     last = K.toarray()
     # Aggregates too small for six motions leave empty rows.
     empty = np.flatnonzero(last.diagonal() <= 0.0)
