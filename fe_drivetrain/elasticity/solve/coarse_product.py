@@ -7,6 +7,7 @@ in a cache, before it is multiplied with P; and only what is right of the diagon
 being symmetric.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +36,11 @@ _PIECES = 16
 _ROOM = 16
 
 
-def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> sparse.bsr_array:
+def coarse_product(
+    K: sparse.bsr_array,
+    prolongation: sparse.csr_array,
+    restriction: sparse.csr_array | None = None,
+) -> sparse.bsr_array:
     """P^T K P in 3x3 blocks, with sorted indices.
 
     Parameters
@@ -44,6 +49,8 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
         Stiffness (n, n) in 3x3 blocks, symmetric.
     prolongation : sparse.csr_array
         (n, n_coarse), both multiples of three.
+    restriction : sparse.csr_array or None
+        Its transpose, where that is known already.
 
     Returns
     -------
@@ -51,7 +58,10 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
         (n_coarse, n_coarse) in 3x3 blocks, symmetric to the last digit.
     """
     n_fine, n = K.shape[0] // 3, prolongation.shape[1] // 3
-    forwards, back = _transfers(prolongation)
+    with ThreadPoolExecutor(1) as pool:
+        beside = pool.submit(_transfer, prolongation.T if restriction is None else restriction)
+        forwards = _transfer(prolongation)
+        back = beside.result()
     last = np.full(n_fine, -1, dtype=np.int32)
     some = np.flatnonzero(np.diff(forwards.indptr))
     last[some] = np.maximum.reduceat(forwards.indices, forwards.indptr[some])
@@ -124,12 +134,8 @@ class _Transfer(NamedTuple):
     factors: Floats
 
 
-def _transfers(P: sparse.csr_array) -> tuple[_Transfer, _Transfer]:
-    """A prolongation, and its transpose."""
-    return _transfer(P.tobsr((3, 3))), _transfer(P.T.tobsr((3, 3)))
-
-
-def _transfer(P: sparse.bsr_array) -> _Transfer:
+def _transfer(given: sparse.sparray) -> _Transfer:
+    P = given.tobsr((3, 3))
     first, *others, last = P.data.reshape(-1, 9).T
     plain = (first == others[3]) & (first == last)
     for place in (0, 1, 2, 4, 5, 6):

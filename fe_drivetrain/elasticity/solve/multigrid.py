@@ -249,7 +249,7 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
     if system.prolongation is not None and options.linear_level:
         P = system.prolongation
         levels.append(Level(*_smoothing(K, options), options.degree, _in_rows(P), _in_rows(P.T)))
-        K = coarse_product(K, P)
+        K = coarse_product(K, P, levels[-1].restriction)
     elif system.prolongation is not None:
         motions, body = system.prolongation @ motions, np.zeros(K.shape[0] // 3, dtype=np.int64)
     connected = _within_bodies(K, body) if options.apart else None
@@ -265,7 +265,8 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
             wide, motions, connected, options.prolongation_smoother, *smoothing[1:]
         )
         levels.append(Level(*smoothing, degree, _in_rows(P), _in_rows(P.T)))
-        K, connected, width = coarse_product(K, levels[-1].prolongation), None, 6
+        K = coarse_product(K, levels[-1].prolongation, levels[-1].restriction)
+        connected, width = None, 6
     last = K.toarray()
     # Aggregates too small for six motions leave empty rows.
     empty = np.flatnonzero(last.diagonal() <= 0.0)
