@@ -100,7 +100,10 @@ def _smooth(
     columns: Index,
     data: Floats,
 ) -> None:
-    """Put T + factor diag^-1 K T into rows of blocks; all blocks flat."""
+    """Put T + factor diag^-1 K T into rows of blocks, without those of zeros; all blocks flat.
+
+    Blocks of zeros, as between nodes of which one is held, would connect aggregates.
+    """
     end = 0
     for i in range(len(indptr) - 1):
         first = end
@@ -135,4 +138,13 @@ def _smooth(
                 end += 1
             for c in range(18):
                 data[18 * met[aggregate[i]] + c] += T[18 * i + c]
+        last, end = end, first
+        for q in range(first, last):
+            met[columns[q]] = -1
+            is_zero = True
+            for c in range(18):
+                data[18 * end + c] = data[18 * q + c]
+                is_zero &= data[18 * q + c] == 0.0
+            columns[end] = columns[q]
+            end += not is_zero
         rows[i + 1] = end
