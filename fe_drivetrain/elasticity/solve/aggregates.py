@@ -59,15 +59,26 @@ def coarsened(
         wide = K.tobsr(2 * tentative.blocksize[:1])
         spread = energy_prolongation_smoother(wide, tentative, connected, coarse, None, (False, {}))
         return spread, coarse
-    return _smoothed(K.tobsr((3, 3)), tentative, inverse, _DAMPING / largest), coarse
+    return smoothed(K.tobsr((3, 3)), tentative, inverse, _DAMPING / largest), coarse
 
 
-def _smoothed(
+def smoothed(
     K: sparse.bsr_array, tentative: sparse.bsr_array, inverse: Floats, factor: float
 ) -> sparse.bsr_array:
     """A tentative prolongation T less a factor times diag^-1 K T, in blocks of three rows.
 
     A node of T has a block in one aggregate or in none, so that K T need not be a general product.
+
+    Parameters
+    ----------
+    K : sparse.bsr_array
+        Stiffness (n, n) in 3x3 blocks.
+    tentative : sparse.bsr_array
+        T (n, 6 n_aggregates), in blocks of three or six rows.
+    inverse : Floats
+        (n / 3, 3, 3) inverses of the diagonal blocks.
+    factor : float
+        The factor.
     """
     indptr, indices = pattern_of(K)
     per_node, n = tentative.blocksize[0] // 3, len(indptr) - 1
