@@ -11,8 +11,8 @@ from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.elasticity.operator.element_loops import in_pieces
 from fe_drivetrain.elasticity.operator.kernels import Index
 
-# Rows that a thread takes at once.
-_PIECES = 8
+# Rows that a thread takes at once, and so few that they take less time than threads to start.
+_PIECES, _FEW = 8, 20_000
 
 
 @njit(cache=True)
@@ -63,7 +63,11 @@ def diagonal(indptr: Index, indices: Index, data: Floats) -> Floats:
     """Diagonal blocks (n, 3, 3); zero where there are none."""
     blocks = np.zeros((len(indptr) - 1, 3, 3))
     flat = indptr, indices, data.reshape(-1), blocks.reshape(-1)
-    in_pieces(_PIECES, _copy_diagonal, *flat)
+    if len(blocks) < _FEW:
+        for piece in range(_PIECES):
+            _copy_diagonal(piece, *flat)
+    else:
+        in_pieces(_PIECES, _copy_diagonal, *flat)
     return blocks
 
 
