@@ -56,4 +56,5 @@ def _alone(corners: Ints, slab: Ints, n_points: int) -> Bools:
         owner[column] = slab
     for column in columns:
         shared[column[owner[column] != slab]] = True
-    return ~np.logical_or.reduce([shared[column] for column in columns])
+    met = np.logical_or.reduce([shared[column] for column in columns])
+    return np.asarray(~met)

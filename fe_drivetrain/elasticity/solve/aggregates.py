@@ -129,11 +129,11 @@ def _smooth(
                     data[c] = 0.0
                 end += 1
             t = 18 * met[g]
-            for r in range(3):
-                for k in range(3):
-                    number = K[9 * p + 3 * r + k]
-                    for c in range(6):
-                        data[t + 6 * r + c] += number * T[18 * j + 6 * k + c]
+            for c in range(6):
+                x, y, z = T[18 * j + c], T[18 * j + 6 + c], T[18 * j + 12 + c]
+                for r in range(3):
+                    b = 9 * p + 3 * r
+                    data[t + 6 * r + c] += K[b] * x + K[b + 1] * y + K[b + 2] * z
         for q in range(first, end):
             for c in range(18 * q, 18 * q + 6):
                 x, y, z = data[c], data[c + 6], data[c + 12]

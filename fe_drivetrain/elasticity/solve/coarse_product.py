@@ -99,7 +99,7 @@ def _most_columns(back: "_Transfer", K: sparse.bsr_array) -> int:
     """Bound of the columns of a row of P^T K."""
     met = np.cumsum(np.append(0, np.diff(K.indptr)[back.indices]))
     most = int(np.diff(met[back.indptr]).max(initial=0))
-    return min(most, K.shape[0] // 3)
+    return min(most, len(K.indptr) - 1)
 
 
 class _Rows(NamedTuple):
