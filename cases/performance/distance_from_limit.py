@@ -170,7 +170,7 @@ def timed(problem: Problem) -> Solved:
         "pattern": problem.cells.nbytes
         + held_bytes(pattern.indptr, pattern.indices, pattern.slots),
         "elements": element_bytes(problem, pattern, system.K.data),
-        "reduction": reduction_bytes(system),
+        "reduction": reduction_bytes(problem, system),
         **set_up_bytes(system, hierarchy),
         "iterations": found.iterations * iteration_bytes(system, hierarchy),
     }
@@ -194,11 +194,15 @@ def element_bytes(problem: Problem, pattern: Pattern, blocks: Floats) -> float:
     return held_bytes(problem.points, problem.cells, pattern.slots, blocks)
 
 
-def reduction_bytes(system: System) -> float:
-    """The pattern is read; the diagonal, and what leads to linear elements, written."""
+def reduction_bytes(problem: Problem, system: System) -> float:
+    """Nodes, cells and the pattern are read; the diagonal, and what leads to linear elements, made.
+
+    The blocks of the diagonal are read, too.
+    """
     assert system.elements is not None
     transfer = matrix_bytes(system.prolongation) + held_bytes(system.near_nullspace, system.body)
-    return held_bytes(system.K.indices, system.elements.diagonal) + transfer
+    mesh = held_bytes(problem.points, problem.cells, system.K.indices)
+    return mesh + 2.0 * held_bytes(system.elements.diagonal) + transfer
 
 
 def accessed_bytes(pattern: Pattern, system: System) -> dict[str, float]:
@@ -450,14 +454,17 @@ def method(solved: Solved) -> list[str]:
         "The floor of a phase is what it has to read and write once caches hold nothing of the "
         "matrices, over the fastest of the loops over plain arrays, of "
         f"{threads} thread{'s' * (threads > 1)}: sizes of the arrays themselves. Assembly reads "
-        "nodes, cells and places, and writes each block once. Set-up reads the stiffness of each "
-        "level for its smoother and for the next level, and, in the smoother's precision, "
-        f"{multigrid.LANCZOS_STEPS} times for its largest eigenvalue. Iterations have "
-        f"{solved.passes} passes over the finest stiffness each, that of conjugate gradients in "
-        "double precision.",
+        "nodes, cells and places, and writes each block once. Reduction reads nodes, cells, the "
+        "pattern and the diagonal, and writes the diagonal and the way from linear elements. "
+        "Set-up reads the stiffness of each level for its smoother and for the next level, and, in "
+        f"the smoother's precision, {multigrid.LANCZOS_STEPS} times for its largest eigenvalue. "
+        f"Iterations have {solved.passes} passes over the finest stiffness each, that of conjugate "
+        "gradients in double precision.",
         "Assembly stays above its floor because blocks of an element are far apart: each is read "
         "and written once for every element that has it, and the pattern looks each pair of an "
-        "element's nodes up twice. Every access counts these as if no cache held anything. The "
+        "element's nodes up twice. Every access counts these as if no cache held anything. "
+        "Reduction goes through the cells in one thread, once for bodies and once for corners, "
+        "while another clears what supports hold; blocks of the diagonal are far apart. The "
         "product for linear elements adds each block of a row for each parent of its node.",
         "Two steps of set-up are timed once more by themselves; all else is set-up less these. "
         "What stays in caches anyway, as the neighbours' displacements in a product, is not "

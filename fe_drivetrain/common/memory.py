@@ -9,10 +9,14 @@ from pathlib import Path
 
 STATUS = Path("/proc/self/status")
 
-# Of mallopt(3): from which size on an array is mapped by itself, and from how much free memory on
-# the system gets it back.
-_OPTIONS = {"MALLOC_MMAP_THRESHOLD_": -3, "MALLOC_TRIM_THRESHOLD_": -1}
+# Of mallopt(3): from which size on an array is mapped by itself, from how much free memory on the
+# system gets it back, and how many threads have memory of their own.
 _MAXIMUM = 2**30
+_OPTIONS = {
+    "MALLOC_MMAP_THRESHOLD_": (-3, _MAXIMUM),
+    "MALLOC_TRIM_THRESHOLD_": (-1, _MAXIMUM),
+    "MALLOC_ARENA_MAX": (-8, 1),
+}
 
 # Of gc.set_threshold: passes through what is younger before one through all; 10 is Python's own.
 _SELDOM = 100
@@ -36,15 +40,16 @@ def keep_freed_memory() -> None:
 
     GNU's C library hands the memory of large arrays back to the system at once, which then clears
     every page of the next array again: at 10 k unknowns a fifth of a solve, and most of the time
-    that the kernel takes at a million. A user's ``MALLOC_MMAP_THRESHOLD_`` or
-    ``MALLOC_TRIM_THRESHOLD_`` stays, and other C libraries are left as they are.
+    that the kernel takes at a million. And arrays of another thread would not take what this one
+    has freed. A user's ``MALLOC_MMAP_THRESHOLD_``, ``MALLOC_TRIM_THRESHOLD_`` or
+    ``MALLOC_ARENA_MAX`` stays, and other C libraries are left as they are.
     """
     if sys.platform != "linux":
         return
     library = ctypes.CDLL(None)
-    for name, number in _OPTIONS.items():
+    for name, (number, value) in _OPTIONS.items():
         if hasattr(library, "mallopt") and name not in os.environ:
-            library.mallopt(number, _MAXIMUM)
+            library.mallopt(number, value)
 
 
 def peak_memory() -> int | None:

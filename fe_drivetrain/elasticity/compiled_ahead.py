@@ -122,7 +122,29 @@ def _solver() -> None:
             kernels.times_blocks(eye, X, 1.0, out)
             kernels.rounded(eye, rounded)
             kernels.invert(eye, np.empty_like(eye))
+            _transfers()
         kernels.add_product(sparse.csr_array(np.eye(3 * n)), X, out)
+
+
+def _transfers() -> None:
+    """Loops of `solve.reduction`, and of the first aggregates, of one element."""
+    from scipy import sparse
+
+    from fe_drivetrain.elasticity.mesh.bodies import connected_bodies
+    from fe_drivetrain.elasticity.operator import graph
+    from fe_drivetrain.elasticity.solve.aggregates import smoothed
+    from fe_drivetrain.elasticity.solve.linear_elements import from_linear
+
+    k = 10
+    cells, every = np.arange(k)[None], np.ones(3 * k, dtype=bool)
+    connected_bodies(cells, k)
+    from_linear(cells, k, sparse.eye_array(3 * k, format="csr"), every)
+    node = np.eye(3)[None]
+    one = np.arange(2, dtype=np.int32), np.zeros(1, dtype=np.int32)
+    graph.diagonal(*one, node)
+    K = sparse.bsr_array((node, one[1], one[0]), shape=(3, 3))
+    tentative = sparse.bsr_array((np.ones((1, 3, 6)), one[1], one[0]), shape=(3, 6))
+    smoothed(K, tentative, node, 0.0)
 
 
 def _meridian() -> None:

@@ -44,6 +44,36 @@ def test_freed_memory_is_taken_again(
     assert (int(done.stdout) < 100) == again
 
 
+#: Pages that an array of another thread asks the system for, after one as large was freed here.
+ASKED_FOR_ELSEWHERE = """
+import resource
+import threading
+import fe_drivetrain.elasticity.operator.kernels
+
+def fill():
+    bytearray(24_000_000)[::4096]
+
+fill()
+before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+thread = threading.Thread(target=fill)
+thread.start()
+thread.join()
+print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="an option of GNU's C library")
+@pytest.mark.parametrize(("user", "again"), [({}, True), ({"MALLOC_ARENA_MAX": "8"}, False)])
+def test_memory_that_one_thread_freed_is_taken_by_another(
+    user: dict[str, str], again: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in [name for name in os.environ if name.startswith(("MALLOC_", "GLIBC_"))]:
+        monkeypatch.delenv(name)
+    done = run_python("-c", ASKED_FOR_ELSEWHERE, environment=user)
+    assert done.returncode == 0, done.stderr
+    assert (int(done.stdout) < 200) == again
+
+
 #: How often all was gone through while objects that last were made, whether a cycle that was
 #: made among them is gone, and how many objects the last collection found.
 COLLECTED = """

@@ -66,6 +66,22 @@ def test_the_step_is_block_jacobi_as_pyamg_has_it(system):
     assert motions.shape[1] == 6
 
 
+def test_blocks_of_zeros_do_not_connect_aggregates(system):
+    """Between nodes of which one is held, whose blocks stay in the pattern of the stiffness."""
+    (P, coarse), connected = level(system.K, system.near_nullspace, "jacobi")
+    T, _ = fit_candidates(standard_aggregation(connected)[0], system.near_nullspace)
+    every = (system.K @ T).tobsr((3, 6))
+    assert abs(P.data).reshape(len(P.data), -1).max(axis=1).min() > 0.0
+    assert len(P.indices) < len(every.indices)
+    below = coarse_product(system.K, P.tocsr())
+    wide = below.tobsr((6, 6)).sorted_indices()
+    indptr, indices, body = multigrid._of_nodes(below, 2)
+    assert (indptr == wide.indptr).all()
+    assert (indices == wide.indices).all()
+    assert len(body) == len(coarse) // 6
+    assert indptr.dtype == indices.dtype == np.int32
+
+
 def test_iterations_are_few_with_it_and_many_without(system, rng):
     F = np.where(system.K.diagonal()[:, None] > 0, rng.standard_normal((system.K.shape[0], 1)), 0.0)
     counts = {}
@@ -89,3 +105,5 @@ def test_the_coarse_product_is_that_of_sparse_matrices(system, rng, plain):
     np.testing.assert_allclose(found.toarray(), wanted, atol=1e-13 * np.abs(wanted).max())
     assert abs(found - found.T).max() == 0.0
     assert found.has_canonical_format
+    again = coarse_product(system.K, P, P.T.tocsr())
+    assert (again.data == found.data).all()

@@ -38,17 +38,19 @@ def bearing(scene):
         found = equilibrium(entry.bearing("b"), [[0, 2e4, 1e4, 0, 0], [0, 0, 2e4, 0, 0]])
         found.unbalanced, found.rollers
 
-work, module = {
-    "meridian": (meridian, "elasticity.revolution.frontal"),
-    "solver": (solver, "elasticity.operator.kernels"),
-    "bearing": (bearing, "bearing.newton"),
+solid = ("operator.kernels", "mesh.bodies", "solve.linear_elements", "solve.aggregates")
+work, modules = {
+    "meridian": (meridian, ["elasticity.revolution.frontal"]),
+    "solver": (solver, [f"elasticity.{name}" for name in solid]),
+    "bearing": (bearing, ["bearing.newton"]),
 }[sys.argv[1]]
-module = import_module(f"fe_drivetrain.{module}")
+modules = [import_module(f"fe_drivetrain.{module}") for module in modules]
 rehearse(sys.argv[1])
-before = forms(module)
-assert before
+before = [forms(module) for module in modules]
+assert all(before)
 work(quick_scene(library_scene("main_bearing_bonded")))
-print(sorted({name for name, form in forms(module) - before}))
+added = [forms(module) - those for module, those in zip(modules, before, strict=True)]
+print(sorted({name for those in added for name, form in those}))
 """
 
 

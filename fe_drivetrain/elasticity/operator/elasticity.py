@@ -134,28 +134,28 @@ def assemble_materials(
         indices = np.concatenate([indices, last.indices.astype(np.int32)])
     # NumPy asks for large pages for `empty`, not for `zeros`, whose small ones cost a third of all
     data = np.empty((len(indices), 3, 3))
-    # Gradients of straight tetrahedra are linear at most: a rule of degree 2 is exact.
-    affine = np.full(len(cells), kind.name == "tetra")
-    if kind.name == "tetra10":
-        affine = element_loops.is_straight(points, nodes)
-    rules = [
-        (of & straight, rule, lame)
-        for of, lame in materials
-        for straight, rule in ((affine, kind.table(2)), (~affine, kind.table(kind.degree)))
-    ]
-
-    def clear(some: Floats) -> None:
-        some.fill(0.0)
-
-    def add(some: Ints) -> None:
-        for of, rule, lame in rules:
-            element_loops.add_elements(
-                points, nodes, some[of[some]], *rule, *lame, pattern.slots, data
-            )
-
     with ThreadPoolExecutor(get_num_threads()) as pool:
-        list(pool.map(clear, np.array_split(data, get_num_threads())))
-        for parts in slabs(points, cells[:, : kind.n_corners]):
+        clears = [pool.submit(some.fill, 0.0) for some in np.array_split(data, get_num_threads())]
+        # Gradients of straight tetrahedra are linear at most: a rule of degree 2 is exact.
+        affine = np.full(len(cells), kind.name == "tetra")
+        if kind.name == "tetra10":
+            affine = element_loops.is_straight(points, nodes)
+        rules = [
+            (of & straight, rule, lame)
+            for of, lame in materials
+            for straight, rule in ((affine, kind.table(2)), (~affine, kind.table(kind.degree)))
+        ]
+
+        def add(some: Ints) -> None:
+            for of, rule, lame in rules:
+                element_loops.add_elements(
+                    points, nodes, some[of[some]], *rule, *lame, pattern.slots, data
+                )
+
+        rounds = slabs(points, cells[:, : kind.n_corners])
+        for clear in clears:
+            clear.result()
+        for parts in rounds:
             list(pool.map(add, parts))
     if last is not None:
         data[len(pattern.indices) :] = last.data

@@ -30,6 +30,10 @@ from fe_drivetrain.elasticity.operator.vectors import (
 # Rows that a thread takes at once have a marker for each node.
 _PIECES = 8
 
+# A place in a cell and the cell are one number; no element has as many nodes. To divide by the
+# number of nodes would take as long as all else.
+_PLACES = 32
+
 #: An edge node this close to the middle of its edge, per length of the edge, is on it.
 _STRAIGHT = 2e-13
 
@@ -106,7 +110,7 @@ def in_pieces(count: int, loop: Callable[..., None], *arrays: Any) -> None:
 def _find_cells(
     cells: Index, start: NDArray[np.int64], fill: NDArray[np.int64], where: NDArray[np.int64]
 ) -> None:
-    """In ``where``, from its start, each node's places in ``cells``, flat."""
+    """In ``where``, from its start, each node's places: a cell times `_PLACES`, and that in it."""
     n_cells, k = cells.shape
     for c in range(n_cells):
         for a in range(k):
@@ -117,7 +121,7 @@ def _find_cells(
     for c in range(n_cells):
         for a in range(k):
             i = cells[c, a]
-            where[fill[i]] = c * k + a
+            where[fill[i]] = c * _PLACES + a
             fill[i] += 1
 
 
@@ -135,9 +139,9 @@ def _count_pairs(
     last, count = seen[piece], counts[piece]
     for j in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
         for w in range(start[j], start[j + 1]):
-            c = where[w] // k
+            c = np.uint64(where[w]) // np.uint64(_PLACES)
             for a in range(k):
-                i = cells[c, a]
+                i = np.uint64(cells[c, np.uint64(a)])
                 if last[i] != j:
                     last[i] = j
                     count[i] += 1
@@ -163,15 +167,15 @@ def _place_pairs(
     last, end = seen[piece], following[piece]
     for j in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
         for w in range(start[j], start[j + 1]):
-            c = where[w] // k
-            b = where[w] - c * k
+            c = np.uint64(where[w]) // np.uint64(_PLACES)
+            b = np.uint64(where[w]) % np.uint64(_PLACES)
             for a in range(k):
-                i = cells[c, a]
+                i = np.uint64(cells[c, np.uint64(a)])
                 if last[i] != j:
                     last[i] = j
-                    indices[end[i]] = j
+                    indices[np.uint64(end[i])] = j
                     end[i] += 1
-                slots[c, a, b] = end[i] - 1
+                slots[c, np.uint64(a), b] = end[i] - 1
 
 
 @njit(inline="always")

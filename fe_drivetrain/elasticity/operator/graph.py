@@ -6,8 +6,13 @@ Compiled by numba at the first call (seconds), then kept in its cache on disk.
 import numpy as np
 from numpy.typing import NDArray
 
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.compiled import njit
+from fe_drivetrain.elasticity.operator.element_loops import in_pieces
 from fe_drivetrain.elasticity.operator.kernels import Index
+
+# Rows that a thread takes at once, and so few that they take less time than threads to start.
+_PIECES, _FEW = 8, 20_000
 
 
 @njit(cache=True)
@@ -51,3 +56,27 @@ def _find_places(
         for p in range(indptr[rows[k]], indptr[rows[k] + 1]):
             if indices[p] == columns[k]:
                 found[k] = p
+                break
+
+
+def diagonal(indptr: Index, indices: Index, data: Floats) -> Floats:
+    """Diagonal blocks (n, 3, 3); zero where there are none."""
+    blocks = np.zeros((len(indptr) - 1, 3, 3))
+    flat = indptr, indices, data.reshape(-1), blocks.reshape(-1)
+    if len(blocks) < _FEW:
+        for piece in range(_PIECES):
+            _copy_diagonal(piece, *flat)
+    else:
+        in_pieces(_PIECES, _copy_diagonal, *flat)
+    return blocks
+
+
+@njit(cache=True, nogil=True)
+def _copy_diagonal(piece: int, indptr: Index, indices: Index, data: Floats, blocks: Floats) -> None:
+    n = len(indptr) - 1
+    for i in range(piece * n // _PIECES, (piece + 1) * n // _PIECES):
+        for p in range(indptr[i], indptr[i + 1]):
+            if indices[p] == i:
+                for k in range(9):
+                    blocks[9 * i + k] = data[9 * p + k]
+                break

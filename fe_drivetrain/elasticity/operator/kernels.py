@@ -14,7 +14,7 @@ from numba import prange
 from numpy.typing import NDArray
 from scipy import sparse
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Bools, Floats
 from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.common.memory import keep_freed_memory
 from fe_drivetrain.elasticity.operator.vectors import (
@@ -394,17 +394,29 @@ def _add_product_of_many(
             store(f, out, i * columns + k)
 
 
-def kept_blocks(indptr: Index, indices: Index, data: Floats, kept: Floats, out: Floats) -> None:
+def kept_blocks(indptr: Index, indices: Index, data: Floats, kept: Bools, out: Floats) -> None:
     """Blocks with rows and columns of degrees of freedom zeroed where (n_nodes, 3) ``kept`` is.
 
-    Where ``out`` is ``data``, little is read and written.
+    The pattern is symmetric. Where ``out`` is ``data``, little is read and written.
     """
     if out is not data:
         np.copyto(out, data)
-    some = ~np.asarray(kept.all(axis=1))
-    touched = np.flatnonzero(np.repeat(some, np.diff(indptr)) | some[indices])
-    rows = np.searchsorted(indptr, touched, side="right") - 1
-    out[touched] *= kept[rows, :, None] * kept[indices[touched], None, :]
+    some = ~(kept[:, 0] & kept[:, 1] & kept[:, 2])  # of so short rows NumPy's all is slow
+    beside = some.copy()
+    beside[indices[_entries(indptr, np.flatnonzero(some))]] = True
+    rows = np.flatnonzero(beside)
+    entries = _entries(indptr, rows)
+    rows = np.repeat(rows, indptr[rows + 1] - indptr[rows])
+    touched = some[rows] | some[indices[entries]]
+    entries, rows = entries[touched], rows[touched]
+    out[entries] *= kept[rows, :, None] & kept[indices[entries], None, :]
+
+
+def _entries(indptr: Index, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Places of all blocks of some rows."""
+    counts = indptr[rows + 1] - indptr[rows]
+    before = np.cumsum(counts) - counts
+    return np.repeat(indptr[rows] - before, counts) + np.arange(counts.sum())
 
 
 @njit(cache=True, parallel=True, fastmath=True)

@@ -7,6 +7,7 @@ in a cache, before it is multiplied with P; and only what is right of the diagon
 being symmetric.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +36,11 @@ _PIECES = 16
 _ROOM = 16
 
 
-def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> sparse.bsr_array:
+def coarse_product(
+    K: sparse.bsr_array,
+    prolongation: sparse.csr_array,
+    restriction: sparse.csr_array | None = None,
+) -> sparse.bsr_array:
     """P^T K P in 3x3 blocks, with sorted indices.
 
     Parameters
@@ -44,44 +49,57 @@ def coarse_product(K: sparse.bsr_array, prolongation: sparse.csr_array) -> spars
         Stiffness (n, n) in 3x3 blocks, symmetric.
     prolongation : sparse.csr_array
         (n, n_coarse), both multiples of three.
+    restriction : sparse.csr_array or None
+        Its transpose, where that is known already.
 
     Returns
     -------
     coarse
         (n_coarse, n_coarse) in 3x3 blocks, symmetric to the last digit.
     """
-    n_fine, n = K.shape[0] // 3, prolongation.shape[1]
-    P = prolongation.tobsr((3, 3))
-    forwards, back = _transfer(P), _transfer(P.T)
+    n_fine, n = K.shape[0] // 3, prolongation.shape[1] // 3
+    with ThreadPoolExecutor(1) as pool:
+        beside = pool.submit(_transfer, prolongation.T if restriction is None else restriction)
+        forwards = _transfer(prolongation)
+        back = beside.result()
     last = np.full(n_fine, -1, dtype=np.int32)
     some = np.flatnonzero(np.diff(forwards.indptr))
     last[some] = np.maximum.reduceat(forwards.indices, forwards.indptr[some])
-    pieces = np.linspace(0, n // 3, _PIECES + 1).astype(np.int64)
-    indptr, most = np.zeros(n // 3 + 1, dtype=np.int32), np.zeros(_PIECES, dtype=np.int64)
+    pieces = np.linspace(0, n, _PIECES + 1).astype(np.int64)
     # NumPy makes the arrays out here: in a compiled loop that takes longer to compile
-    met, seen = (np.full((_PIECES, m), -1, np.int32) for m in (n_fine, n // 3))
-    markers = _Markers(met, seen, last)
-    patterns = back.pattern, _Pattern(K.indptr, K.indices), forwards.pattern
-    in_pieces(_PIECES, _count, *patterns, pieces, markers, indptr[1:], most)
-    np.cumsum(indptr, out=indptr)
-    met[:], seen[:] = -1, -1
-    indices, data = np.empty(indptr[-1], dtype=np.int32), np.zeros((indptr[-1], 3, 3))
-    row = _Row(
-        np.empty((_PIECES, most.max()), np.int32), np.empty((_PIECES, most.max() * _ROOM + LANES))
+    markers = _Markers(
+        np.empty((_PIECES, n_fine), np.int32), np.empty((_PIECES, n), np.int32), last
     )
-    in_pieces(
-        *(_PIECES, _fill),
-        *(back, _Rows(K.indptr, K.indices, K.data.ravel()), forwards),
-        *(pieces, markers, row, _Rows(indptr, indices, data.ravel())),
-    )
-    return _mirrored(_Rows(indptr, indices, data))
+    most = _most_columns(back, K)
+    row = _Row(np.empty((_PIECES, most), np.int32), np.empty((_PIECES, most * _ROOM + LANES)))
+    counts = np.zeros(n, dtype=np.int32)
+    # room for as many as a row of K P would have if it met each coarse node once: memory that is
+    # not written to costs nothing
+    each = len(K.indices) * len(forwards.indices) // max(1, n_fine**2) + 1
+    parts: list[tuple[Index, Floats]] = [(counts, last)] * _PIECES
+
+    def fill(piece: int) -> None:
+        room = each * int(pieces[piece + 1] - pieces[piece])
+        end = -1
+        while end < 0:
+            found = np.empty(room, np.int32), np.empty(9 * room)
+            markers.fine[piece], markers.coarse[piece] = -1, -1
+            stiffness = _Rows(K.indptr, K.indices, K.data.reshape(-1))
+            end = _fill(piece, back, stiffness, forwards, pieces, markers, row, counts, *found)
+            room *= 2
+        parts[piece] = found[0][:end], found[1][: 9 * end]
+
+    in_pieces(_PIECES, fill)
+    indptr = np.append(np.int32(0), np.cumsum(counts, dtype=np.int32))
+    indices, data = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
+    return _mirrored(_Rows(indptr, indices, data.reshape(-1, 3, 3)))
 
 
-class _Pattern(NamedTuple):
-    """Where the blocks of a matrix are."""
-
-    indptr: Index
-    indices: Index
+def _most_columns(back: "_Transfer", K: sparse.bsr_array) -> int:
+    """Bound of the columns of a row of P^T K."""
+    met = np.cumsum(np.append(0, np.diff(K.indptr)[back.indices]))
+    most = int(np.diff(met[back.indptr]).max(initial=0))
+    return min(most, len(K.indptr) - 1)
 
 
 class _Rows(NamedTuple):
@@ -115,13 +133,9 @@ class _Transfer(NamedTuple):
     data: Floats
     factors: Floats
 
-    @property
-    def pattern(self) -> _Pattern:
-        """Where the blocks are."""
-        return _Pattern(self.indptr, self.indices)
 
-
-def _transfer(P: sparse.bsr_array) -> _Transfer:
+def _transfer(given: sparse.sparray) -> _Transfer:
+    P = given.tobsr((3, 3))
     first, *others, last = P.data.reshape(-1, 9).T
     plain = (first == others[3]) & (first == last)
     for place in (0, 1, 2, 4, 5, 6):
@@ -147,39 +161,6 @@ def _mirrored(right: "_Rows") -> sparse.bsr_array:
 
 
 @njit(cache=True, nogil=True)
-def _count(
-    piece: int,
-    R: _Pattern,
-    K: _Pattern,
-    P: _Pattern,
-    pieces: NDArray[np.int64],
-    markers: _Markers,
-    counts: Index,
-    most: NDArray[np.int64],
-) -> None:
-    """Blocks in each coarse row of R K P from the diagonal on, and most columns of R K."""
-    (Rptr, Rind), (Kptr, Kind), (Pptr, Pind) = R, K, P
-    met, seen, last = markers.fine[piece], markers.coarse[piece], markers.last
-    for a in range(pieces[piece], pieces[piece + 1]):
-        count = columns = 0
-        for s in range(Rptr[a], Rptr[a + 1]):
-            i = Rind[s]
-            for p in range(Kptr[i], Kptr[i + 1]):
-                j = Kind[p]
-                if last[j] < a or met[j] == a:
-                    continue
-                met[j] = a
-                columns += 1
-                for q in range(Pptr[j], Pptr[j + 1]):
-                    b = Pind[q]
-                    if b >= a and seen[b] != a:
-                        seen[b] = a
-                        count += 1
-        counts[a] = count
-        most[piece] = max(most[piece], columns)
-
-
-@njit(cache=True, nogil=True)
 def _fill(
     piece: int,
     R: _Transfer,
@@ -188,16 +169,24 @@ def _fill(
     pieces: NDArray[np.int64],
     markers: _Markers,
     row: _Row,
-    coarse: _Rows,
-) -> None:
-    """Sum the blocks of each coarse row of R K P from the diagonal on, in the order met."""
+    counts: Index,
+    indices: Index,
+    data: Floats,
+) -> int:
+    """Sum the blocks of each coarse row of R K P from the diagonal on, in the order met.
+
+    Returns
+    -------
+    int
+        How many blocks there are, in ``counts`` those of each row; -1 where there is no room.
+    """
     Rptr, Rind, left, to = R
     Kptr, Kind, values = K
     Pptr, Pind, right, of = P
-    indptr, indices, data = coarse
     met, place, last = markers.fine[piece], markers.coarse[piece], markers.last
     columns, W = row.columns[piece], row.blocks[piece]
     base = count = 0  # fine nodes of rows before, and of this one
+    end = 0
     for a in range(pieces[piece], pieces[piece + 1]):
         base, count = base + count, 0
         for s in range(Rptr[a], Rptr[a + 1]):
@@ -217,21 +206,30 @@ def _fill(
                     _add(W, w, factor, values, np.uint64(9 * p))
                 else:
                     _add_product(W, w, left, np.uint64(9 * s), values, np.uint64(9 * p))
-        first = end = np.int64(indptr[a])
+        first = end
         for c in range(count):
             for q in range(Pptr[columns[c]], Pptr[columns[c] + 1]):
                 b, factor = Pind[q], of[q]
                 if b < a:
                     continue
-                if place[b] < first:
+                is_new = place[b] < first
+                if is_new:
+                    if end == len(indices):
+                        return -1
                     place[b] = end
                     indices[end] = b
                     end += 1
                 t = np.uint64(9) * np.uint64(place[b])
-                if factor == factor:
+                if factor == factor and is_new:
+                    _put(data, t, factor, W, np.uint64(_ROOM * c))
+                elif factor == factor:
                     _add(data, t, factor, W, np.uint64(_ROOM * c))
                 else:
+                    if is_new:
+                        _put(data, t, 0.0, W, np.uint64(_ROOM * c))
                     _add_product(data, t, W, np.uint64(_ROOM * c), right, np.uint64(9 * q))
+        counts[a] = end - first
+    return end
 
 
 @njit(inline="always")

@@ -249,20 +249,23 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
     if system.prolongation is not None and options.linear_level:
         P = system.prolongation
         levels.append(Level(*_smoothing(K, options), options.degree, _in_rows(P), _in_rows(P.T)))
-        K = coarse_product(K, P)
+        K = coarse_product(K, P, levels[-1].restriction)
     elif system.prolongation is not None:
         motions, body = system.prolongation @ motions, np.zeros(K.shape[0] // 3, dtype=np.int64)
-    connected = _within_bodies(K, body) if options.apart else None
-    while K.shape[0] // K.blocksize[0] > options.coarsest and len(levels) < _MAX_LEVELS:
-        if connected is None:
-            connected = symmetric_strength_of_connection(K, options.strength)
+    connected = _within_bodies(*kernels.pattern_of(K), body) if options.apart else None
+    K, width = in_blocks(K), 3
+    while K.shape[0] // width > options.coarsest and len(levels) < _MAX_LEVELS:
         # Six degrees of freedom an aggregate below the first level: two blocks of three.
-        blocks = in_blocks(K)
-        smoothing = _smoothing(blocks, options)
+        if connected is None and options.strength == 0.0:
+            connected = _within_bodies(*_of_nodes(K, width // 3))
+        elif connected is None:
+            connected = symmetric_strength_of_connection(K.tobsr((width, width)), options.strength)
+        smoothing = _smoothing(K, options)
         degree = options.coarse_degree if levels else options.degree
         P, motions = coarsened(K, motions, connected, options.prolongation_smoother, *smoothing[1:])
         levels.append(Level(*smoothing, degree, _in_rows(P), _in_rows(P.T)))
-        K, connected = coarse_product(blocks, levels[-1].prolongation).tobsr((6, 6)), None
+        K = coarse_product(K, levels[-1].prolongation, levels[-1].restriction)
+        connected, width = None, 6
     last = K.toarray()
     # Aggregates too small for six motions leave empty rows.
     empty = np.flatnonzero(last.diagonal() <= 0.0)
@@ -333,13 +336,23 @@ def max_eigenvalue(K: Rounded | sparse.bsr_array, inverse: Floats) -> float:
     return float(values[-1] + beside[-1] * abs(vectors[-1, -1]))
 
 
-def _within_bodies(K: sparse.bsr_array, body: Ints) -> sparse.csr_matrix:
+def _of_nodes(K: sparse.bsr_array, blocks: int) -> tuple[kernels.Index, kernels.Index, Ints]:
+    """Pattern of a matrix whose nodes have some blocks of three each, all of one body."""
+    n = len(K.indptr) // blocks
+    starts, ends = K.indptr[:-1:blocks], K.indptr[1::blocks]
+    counts = (ends - starts) // blocks
+    indptr = np.append(np.int32(0), np.cumsum(counts, dtype=np.int32))
+    entries = np.repeat(starts - blocks * indptr[:-1], counts) + blocks * np.arange(indptr[-1])
+    return indptr, K.indices[entries] // blocks, np.zeros(n, dtype=np.int64)
+
+
+def _within_bodies(indptr: kernels.Index, indices: kernels.Index, body: Ints) -> sparse.csr_matrix:
     """Connections of nodes, those across a joint left out."""
     n = len(body)
-    row = np.repeat(np.arange(n), np.diff(K.indptr))
-    a, b = body[row], body[K.indices]
+    row = np.repeat(np.arange(n), np.diff(indptr))
+    a, b = body[row], body[indices]
     kept = (a == b) | (a < 0) | (b < 0)
-    entries = (np.ones(int(kept.sum())), (row[kept], K.indices[kept]))
+    entries = (np.ones(int(kept.sum())), (row[kept], indices[kept]))
     connected = sparse.csr_matrix(entries, shape=(n, n))
     connected.indices, connected.indptr = (
         i.astype(np.int32, copy=False) for i in (connected.indices, connected.indptr)

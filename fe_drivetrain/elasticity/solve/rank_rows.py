@@ -212,6 +212,8 @@ def passed_on(K: sparse.bsr_array, T: sparse.csr_array, free: Bools) -> sparse.c
         Matrix (n, n) and flags (n,) of the elimination.
     """
     pivots = np.flatnonzero(~free & (np.diff(T.indptr) > 0))
+    if not len(pivots):
+        return sparse.csr_array(K.shape)
     rows = rows_of(K, pivots)
     dependent = T[pivots]
     between = rows[:, pivots]

@@ -6,6 +6,7 @@ corner nodes.
 """
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -18,8 +19,8 @@ from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import rigid_motions
 from fe_drivetrain.elasticity.interfaces.constraints import Elimination, ReferencePoint
 from fe_drivetrain.elasticity.mesh.bodies import connected_bodies
-from fe_drivetrain.elasticity.mesh.shapes import element_kind
 from fe_drivetrain.elasticity.operator import graph, kernels
+from fe_drivetrain.elasticity.solve.linear_elements import from_linear
 from fe_drivetrain.elasticity.solve.rank_rows import passed_on
 from fe_drivetrain.elasticity.solve.sums import Sums, sums_of
 
@@ -136,11 +137,11 @@ def reduce(
         Whether the system may take the place of K where nothing else needs it: K is lost, and half
         of the memory saved.
     """
-    places = _diagonal_places(K)
-    diagonal = _blocks_at(K, places[: len(points)])
-    elements = Elements(points, cells, diagonal, elimination.T, elimination.free)
+    diagonal = diagonal_blocks(K)
+    elements = Elements(points, cells, diagonal[: len(points)], elimination.T, elimination.free)
     means = [c.is_mean for c in elimination.constraints] + [point.is_mean for point, _ in springs]
-    reduced = reduced_stiffness(K, elimination, overwrite and not any(means), places)
+    mine = overwrite and not any(means)
+    reduced = partial(reduced_stiffness, K, elimination, mine, diagonal)
     system = _system(points, cells, reduced, elimination)
     joints = partial(_joints, points, cells, K, elimination, springs) if any(means) else None
     return replace(system, elements=elements, joints=joints)
@@ -157,64 +158,62 @@ def _joints(
     sums = sums_of(elimination, springs)
     faces = np.diff(sums.rows.tocsc().indptr) > 0
     ground = GROUND * float(K.diagonal().mean()) * sparse.diags_array(faces.astype(float))
-    bodies = reduced_stiffness(_added(K.copy(), -sums.springs), sums.elimination)
-    on_ground = _added(bodies, ground.tocsr())
+
+    def on_ground() -> sparse.bsr_array:
+        bodies = reduced_stiffness(_added(K.copy(), -sums.springs), sums.elimination)
+        return _added(bodies, ground.tocsr())
+
     return Joints(_system(points, cells, on_ground, sums.elimination), sums, elimination.free)
 
 
 def _system(
-    points: Floats, cells: Ints, reduced: sparse.bsr_array, elimination: Elimination
+    points: Floats, cells: Ints, reduced: Callable[[], sparse.bsr_array], elimination: Elimination
 ) -> System:
-    """A reduced stiffness with its corners, motions and bodies."""
-    T, free = elimination.T, elimination.free
-    motions = motions_with_points(points, elimination)
-    body = np.full(len(free) // 3, -1)
+    """A reduced stiffness with its corners, motions and bodies, found beside it."""
+    with ThreadPoolExecutor(1) as pool:
+        beside = pool.submit(_coarse, points, cells, elimination)
+        K = reduced()
+    return System(K, *beside.result(), int(elimination.free.sum()))
+
+
+def _coarse(
+    points: Floats, cells: Ints, elimination: Elimination
+) -> tuple[sparse.csr_array | None, Floats, Ints]:
+    """What multigrid wants to know about a mesh: prolongation, motions and bodies."""
+    body = np.full(len(elimination.free) // 3, -1)
     body[: len(points)] = connected_bodies(cells, len(points))
-    prolongation = None
-    if cells.shape[1] not in (4, 8):
-        prolongation, corners = _prolongation(cells, len(points), T, free)
-        motions, body = motions[corners], body[corners[::3] // 3]
-    return System(reduced, prolongation, motions, body, int(free.sum()))
+    if cells.shape[1] in (4, 8):
+        return None, motions_with_points(points, elimination), body
+    way, corners = from_linear(cells, len(points), elimination.T, elimination.free)
+    return way, motions_with_points(points, elimination, corners), body[corners[::3] // 3]
 
 
 def diagonal_blocks(K: sparse.bsr_array) -> Floats:
     """(n_blocks, 3, 3) diagonal blocks; zero where there are none."""
-    return _blocks_at(K, _diagonal_places(K))
-
-
-def _blocks_at(K: sparse.bsr_array, places: Ints) -> Floats:
-    blocks: Floats = K.data[places]
-    blocks[places < 0] = 0.0
-    return blocks
-
-
-def _diagonal_places(K: sparse.bsr_array) -> Ints:
-    """Places of the diagonal blocks; -1 where there are none."""
-    nodes = np.arange(len(K.indptr) - 1)
-    return np.asarray(graph.places(*kernels.pattern_of(K), nodes, nodes), dtype=np.int64)
+    return graph.diagonal(*kernels.pattern_of(K), K.data)
 
 
 def reduced_stiffness(
     K: sparse.bsr_array,
     elimination: Elimination,
     overwrite: bool = False,
-    diagonal: Ints | None = None,
+    diagonal: Floats | None = None,
 ) -> sparse.bsr_array:
     """T^T K T, with the mean diagonal at eliminated degrees of freedom; K may be overwritten.
 
-    Where the places of the diagonal blocks are known, they need not be found again.
+    Where the diagonal blocks are known, they need not be found again.
     """
     T, free = elimination.T, elimination.free
     if diagonal is None:
-        diagonal = _diagonal_places(K)
-    mean = float(np.einsum("nii->", K.data[diagonal[diagonal >= 0]])) / len(free)
+        diagonal = diagonal_blocks(K)
+    mean = float(np.einsum("nii->", diagonal)) / len(free)
     passed = passed_on(K, T, free)
     indptr, indices = kernels.pattern_of(K)
     data = K.data if overwrite else np.empty_like(K.data)
-    kernels.kept_blocks(indptr, indices, K.data, free.astype(float).reshape(-1, 3), data)
+    kernels.kept_blocks(indptr, indices, K.data, free.reshape(-1, 3), data)
     kept = sparse.bsr_array((data, indices, indptr), shape=K.shape)
     gone = np.flatnonzero(~free)
-    places = diagonal[gone // 3]
+    places = graph.places(indptr, indices, gone // 3, gone // 3)
     has = places >= 0
     data[places[has], gone[has] % 3, gone[has] % 3] = mean
     # Degrees of freedom of reference points have no block of their own yet.
@@ -246,11 +245,20 @@ def in_blocks(K: sparse.sparray) -> sparse.bsr_array:
     return sparse.bsr_array((blocks.data, indices, indptr), shape=K.shape)
 
 
-def motions_with_points(points: Floats, elimination: Elimination) -> Floats:
-    """(n_dofs, 6) rigid motions; reference points follow through their constraints."""
-    n = 3 * len(points)
+def motions_with_points(
+    points: Floats, elimination: Elimination, chosen: Ints | None = None
+) -> Floats:
+    """(n_dofs, 6) rigid motions; reference points follow through their constraints.
+
+    Where some are chosen, those of their degrees of freedom alone: all three of each node.
+    """
+    n, centre = 3 * len(points), points.mean(axis=0)
+    if chosen is not None and n == len(elimination.free):
+        motions = rigid_motions(points[chosen[::3] // 3], centre)
+        motions[~elimination.free[chosen]] = 0.0
+        return motions
     motions = np.zeros((len(elimination.free), 6))
-    motions[:n] = rigid_motions(points, points.mean(axis=0))
+    motions[:n] = rigid_motions(points, centre)
     if n < len(motions) and elimination.constraints:
         rows = sparse.vstack([c.rows for c in elimination.constraints], format="csr")
         own = rows[:, n:]
@@ -258,68 +266,4 @@ def motions_with_points(points: Floats, elimination: Elimination) -> Floats:
         right = -(rows[touching][:, :n] @ motions[:n])
         motions[n:] = np.linalg.lstsq(own[touching].toarray(), right, rcond=None)[0]
     motions[~elimination.free] = 0.0
-    return motions
-
-
-def _prolongation(
-    cells: Ints, n_nodes: int, T: sparse.csr_array, free: np.ndarray
-) -> tuple[sparse.csr_array, Ints]:
-    """Prolongation from corner nodes (and reference points) to all, constraints fulfilled.
-
-    Returns
-    -------
-    prolongation, corners
-        (n, n_corner), and which degrees of freedom the columns are.
-    """
-    kind = element_kind(cells.shape[1])
-    corners = cells[:, : kind.n_corners]
-    # Any cell that has the node will do: on shared nodes all agree.
-    place = np.zeros(n_nodes, dtype=np.int64)
-    place[cells.ravel()] = np.arange(cells.size)
-    cell, local = np.divmod(place, cells.shape[1])
-    weights = kind.corner_weights()[local]
-    has = weights != 0.0
-    is_corner = np.zeros(n_nodes, dtype=bool)
-    is_corner[corners] = True
-    corner, number = np.flatnonzero(is_corner), np.cumsum(is_corner) - 1
-    from_corners = sparse.csr_array(
-        (weights[has], number[corners[cell][has]], np.append(0, np.cumsum(has.sum(axis=1)))),
-        shape=(n_nodes, len(corner)),
-    )
-    n = T.shape[0]
-    columns = np.concatenate(
-        [(3 * corner[:, None] + np.arange(3)).ravel(), np.arange(3 * n_nodes, n)]
-    )
-    spread = _for_each_axis(from_corners, n - 3 * n_nodes)
-    if T.nnz > np.count_nonzero(free):  # some follow others
-        keeps = sparse.csr_array(
-            (np.ones(len(columns)), (columns, np.arange(len(columns)))), shape=spread.shape
-        )
-        spread = (spread @ T[columns][:, columns] + keeps).tocsr()
-    row, column = np.repeat(np.arange(n), np.diff(spread.indptr)), columns[spread.indices]
-    spread.data *= free[row] & free[column]
-    spread.data[row == column] = 1.0
-    spread.eliminate_zeros()
-    return spread, columns
-
-
-def _for_each_axis(weights: sparse.csr_array, others: int) -> sparse.csr_array:
-    """Weights of nodes for each of their three displacements; others keep to themselves.
-
-    What `scipy.sparse.kron` and `block_diag` give, which sort all entries by their places.
-    """
-    counts = np.repeat(np.diff(weights.indptr), 3)
-    indptr = np.concatenate([[0], np.cumsum(counts)])
-    entries = np.arange(indptr[-1]) + np.repeat(
-        np.repeat(weights.indptr[:-1], 3) - indptr[:-1], counts
-    )
-    axes = np.repeat(np.arange(len(counts)) % 3, counts)
-    n, m = 3 * weights.shape[0], 3 * weights.shape[1]
-    return sparse.csr_array(
-        (
-            np.concatenate([weights.data[entries], np.ones(others)]),
-            np.concatenate([3 * weights.indices[entries] + axes, np.arange(m, m + others)]),
-            np.concatenate([indptr, indptr[-1] + np.arange(1, others + 1)]),
-        ),
-        shape=(n + others, m + others),
-    )
+    return motions if chosen is None else motions[chosen]
