@@ -14,8 +14,8 @@ from fe_drivetrain.shafts.response.thermal import ThermalState, thermal_state
 
 CAPTION = (
     "What temperatures alone do: reactions that they add, motions of the shaft there, and growth "
-    "of its seats. Each part has one temperature; the ground, and the gearbox's springs, have none. "
-    "A beam has its inner rings as warm as the shaft, whatever they are"
+    "of its seats. Each part has one temperature; the ground, and the gearbox's springs, have "
+    "none. A beam has its inner rings as warm as the shaft, whatever they are"
 )
 
 _RIGID = "1 beam, rigid housings that rise"

@@ -92,6 +92,14 @@ def test_temperatures_that_cannot_be_are_refused(
         warm("two_bearings", temperatures)
 
 
+def test_a_beam_has_rings_as_warm_as_the_shaft_and_says_so() -> None:
+    """The assembly alone has both temperatures; a cold ring takes some 5 % of a force from it."""
+    ways = [{"shaft": 60.0, "front": ring, "rear": ring} for ring in (20.0, 60.0)]
+    cold, same = (thermal_tables(warm("two_bearings", way)) for way in ways)
+    assert cold == same
+    assert all("inner rings as warm as the shaft" in caption for caption in cold)
+
+
 def test_the_caution_names_the_bearing_that_is_pushed_most() -> None:
     scene = warm("two_bearings", {"shaft": 60.0})
     said = thermal_caution(thermal_tables(scene))
