@@ -18,7 +18,7 @@ from numba import types
 from numba.extending import intrinsic
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.common.compiled import njit
+from fe_drivetrain.common.compiled import inner_loop, njit
 
 #: Kinds of rows, and where in a row of ``data`` its numbers are.
 LAMINAE, CLOSED, BALLS = 0, 1, 2
@@ -160,7 +160,7 @@ def power(x: float, table: Floats) -> float:
     return float(table[b >> _TO_EXPONENT] * table[_SECOND + i] * series)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _power(x: float, n: float) -> float:
     """x^n for positive x; the exponents of springs and balls without a logarithm."""
     if n == 0.0:
@@ -170,7 +170,7 @@ def _power(x: float, n: float) -> float:
     return float(x**n)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def closed(b: float, c: float, K: float, n: float, L: float, s: Floats) -> None:
     """Integrals along a straight roller: s becomes load, moment, and three of the tangent."""
     half = 0.5 * abs(c) * L
@@ -202,7 +202,7 @@ def closed(b: float, c: float, K: float, n: float, L: float, s: Floats) -> None:
     s[4] = q * n * (i2 - 2.0 * b * i1 + b * b * i0) / (c * c)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@inner_loop(fastmath={"reassoc", "contract", "nsz"})
 def lamina_sums(
     b: float,
     c: float,
@@ -232,7 +232,7 @@ def lamina_sums(
     s[2], s[3], s[4] = K * s2, K * s3, K * s4
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
+@inner_loop(fastmath={"reassoc", "contract", "nsz"})
 def even_sums(
     b: float, c: float, K: float, n: float, x: Floats, shares: Floats, table: Floats, s: Floats
 ) -> None:
@@ -253,7 +253,7 @@ def even_sums(
     s[2], s[3], s[4] = K * s2, K * s3, K * s4
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inner_loop(inline="always")
 def roller_sums(row: PackedRow, b: float, c: float, s: Floats) -> None:
     """The same along a roller, in the fastest way that is exact."""
     d = row.data
@@ -281,7 +281,7 @@ def row_of(bearing: Packed, r: int) -> PackedRow:
     )
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inner_loop(inline="always")
 def _element(row: PackedRow, a: float, w: float, t: float, s: Floats, f: Floats) -> float:
     """One rolling element: f becomes its forces and tangent over (a, w, t); returns its load.
 
@@ -293,7 +293,7 @@ def _element(row: PackedRow, a: float, w: float, t: float, s: Floats, f: Floats)
     return _ball(row.data, a, w, t, f) if row.data[KIND] == BALLS else _roller(row, a, w, t, s, f)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inner_loop(inline="always")
 def _ball(d: Floats, a: float, w: float, t: float, f: Floats) -> float:
     """The same of a ball, whose approach is by how much its groove centres move apart."""
     vx = d[AXIAL] + a - d[GROOVE] * t
@@ -319,7 +319,7 @@ def _ball(d: Floats, a: float, w: float, t: float, f: Floats) -> float:
     return float(Q)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inner_loop(inline="always")
 def _roller(row: PackedRow, a: float, w: float, t: float, s: Floats, f: Floats) -> float:
     """The same of a roller; s becomes its sums along it."""
     d = row.data
@@ -340,7 +340,7 @@ def _roller(row: PackedRow, a: float, w: float, t: float, s: Floats, f: Floats) 
     return float(Q)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def evaluate(
     u: Floats,
     bearing: Packed,

@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_drivetrain.bearing.kernels import Packed, evaluate
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.common.compiled import njit
+from fe_drivetrain.common.compiled import inner_loop, njit
 
 MAX_STEPS = 100
 MAX_TRIALS = 80
@@ -92,7 +92,7 @@ class _Place(NamedTuple):
     f: Floats
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+@inner_loop(fastmath={"reassoc", "contract"})
 def solve(A: Floats, b: Floats, x: Floats) -> bool:
     """x = A^-1 b by Cholesky of the lower half, overwritten; whether A is positive definite."""
     m = len(b)
@@ -166,7 +166,7 @@ def next_firmness(firm: float, step: float) -> float:
     return min(10.0 * firm, FIRMEST) if step < 0.5 else firm
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def over_allowed(norm: float, allowed: float) -> float:
     """A residual over what is allowed; nothing is allowed, and left, where there is no load."""
     if allowed > 0.0:
@@ -174,7 +174,7 @@ def over_allowed(norm: float, allowed: float) -> float:
     return 0.0 if norm == 0.0 else np.inf
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _projected(B: Floats, F: Floats, g: Floats) -> None:
     """g = B^T F."""
     for j in range(len(g)):
@@ -183,7 +183,7 @@ def _projected(B: Floats, F: Floats, g: Floats) -> None:
             g[j] += B[k, j] * F[k]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _expanded(B: Floats, w: Floats, u: Floats) -> None:
     """u = B w."""
     for k in range(5):
@@ -192,7 +192,7 @@ def _expanded(B: Floats, w: Floats, u: Floats) -> None:
             u[k] += B[k, j] * w[j]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _norm(g: Floats) -> float:
     total = 0.0
     for value in g:
@@ -200,7 +200,7 @@ def _norm(g: Floats) -> float:
     return float(np.sqrt(total))
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _unbalanced(B: Floats, F: Floats, target: Floats, g: Floats) -> None:
     """g = B^T F - target."""
     _projected(B, F, g)
@@ -208,7 +208,7 @@ def _unbalanced(B: Floats, F: Floats, target: Floats, g: Floats) -> None:
         g[i] -= target[i]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _direction(
     B: Floats, K: Floats, soft: Floats, scale: float, held: float, g: Floats, d: Floats
 ) -> None:
@@ -235,7 +235,7 @@ def _direction(
         d[i] = -d[i]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _search(
     w: Floats,
     d: Floats,
@@ -276,7 +276,7 @@ def _search(
     return step, trials, total
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _newton(
     load: Floats,
     B: Floats,
@@ -319,7 +319,7 @@ def _newton(
         steps += 1
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _is_near(B: Floats, load: Floats, before: Floats) -> bool:
     """Whether a load differs from the one before it by less than half of itself."""
     change, whole = 0.0, 0.0
@@ -355,7 +355,8 @@ def solve_cases(cases: Cases, bearing: Packed, method: Method, found: Found) -> 
         near = method.warm and i > 0 and len(cases.bases) == 1
         near = near and _is_near(B, loads[i], loads[i - 1])
         if not near:
-            w[:] = cases.guesses[i]
+            for j in range(len(w)):  # a slice would compile its refusal, in words, of another shape
+                w[j] = cases.guesses[i, j]
         found.steps[i], found.evaluations[i], found.residuals[i], total = _newton(
             loads[i],
             B,

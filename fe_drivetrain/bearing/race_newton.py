@@ -19,7 +19,7 @@ from fe_drivetrain.bearing.newton import (
     solve,
 )
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.common.compiled import njit
+from fe_drivetrain.common.compiled import inner_loop, njit
 
 MAX_STEPS = 100
 MAX_TRIALS = 60
@@ -96,7 +96,7 @@ class _Motion(NamedTuple):
     lean: Floats
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+@inner_loop(fastmath={"reassoc", "contract"})
 def _dot(a: Floats, b: Floats) -> float:
     total = 0.0
     for i in range(len(a)):
@@ -104,7 +104,7 @@ def _dot(a: Floats, b: Floats) -> float:
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _sums(b: Floats, c: Floats, bearing: Packed, s: Floats) -> float:
     """Load, moment and three of the tangent (total, 5) of rollers at approaches and leans."""
     total = 0.0
@@ -121,7 +121,7 @@ def _sums(b: Floats, c: Floats, bearing: Packed, s: Floats) -> float:
     return total
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+@inner_loop(fastmath={"reassoc", "contract"})
 def _gradient(q: Floats, load: Floats, body: Body, s: Floats, g: Floats) -> None:
     """g = S q - load + forces of the rollers."""
     for i in range(len(q)):
@@ -134,7 +134,7 @@ def _gradient(q: Floats, load: Floats, body: Body, s: Floats, g: Floats) -> None
                 g[i] += Q * P[i] + M * C[i]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+@inner_loop(fastmath={"reassoc", "contract"})
 def _tangent(body: Body, s: Floats, A: Floats) -> None:
     """Lower half of the Hessian."""
     m = len(A)
@@ -152,14 +152,14 @@ def _tangent(body: Body, s: Floats, A: Floats) -> None:
                     row[k] += x * P[k] + y * C[k]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _seen(body: Body, q: Floats, seen: _Motion) -> None:
     """What the rollers see of unknowns q."""
     for j in range(len(seen.approach)):
         seen.approach[j], seen.lean[j] = _dot(body.approach[j], q), _dot(body.lean[j], q)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _springs(body: Body, scale: float, A: Floats) -> None:
     """Lower half of the stiffness A where all rollers are springs."""
     for i in range(len(A)):
@@ -168,7 +168,7 @@ def _springs(body: Body, scale: float, A: Floats) -> None:
         A[i, i] += body.stiffness[i]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _direction(
     body: Body, s: Floats, scale: float, held: float, g: Floats, A: Floats, d: Floats
 ) -> None:
@@ -185,7 +185,7 @@ def _direction(
         d[i] = -d[i]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _slopes(
     q: Floats, load: Floats, body: Body, g: Floats, d: Floats
 ) -> tuple[float, float, float]:
@@ -198,7 +198,7 @@ def _slopes(
     return slope, rest, bend
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _search(
     slopes: tuple[float, float, float],
     now: _Motion,
@@ -236,7 +236,7 @@ def _search(
     return step, trials, total
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _newton(
     load: Floats,
     q: Floats,
@@ -280,7 +280,7 @@ def _newton(
         steps += 1
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _is_near(load: Floats, before: Floats) -> bool:
     """Whether a load differs from the one before it by less than half of itself."""
     change, whole = 0.0, 0.0
@@ -310,7 +310,8 @@ def solve_cases(cases: Cases, body: Body, bearing: Packed, method: Method, found
     loads, unknowns = cases.loads, found.unknowns
     for i in range(len(loads)):
         if method.warm and i > 0 and _is_near(loads[i], loads[i - 1]):
-            unknowns[i] = unknowns[i - 1]
+            for j in range(m):
+                unknowns[i, j] = unknowns[i - 1, j]
         elif not cases.given:
             _springs(body, cases.scales[i], A)
             if not solve(A, loads[i], unknowns[i]):

@@ -37,7 +37,7 @@ from fe_drivetrain.bearing.kernels import (
     row_of,
 )
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.compiled import njit
+from fe_drivetrain.common.compiled import inner_loop, njit
 
 _X, _W = np.polynomial.legendre.leggauss(10)
 
@@ -83,7 +83,7 @@ def _energies(bearing: Packed, u: Floats, found: Floats) -> None:  # pragma: no 
                     found[k] += by * _of_roller(row, b, t * d[LEAN])
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _of_ball(d: Floats, a: float, w: float, t: float) -> float:  # pragma: no cover - compiled
     """Power n + 1 of the growth of a ball's distance."""
     axial = d[AXIAL] + a - d[GROOVE] * t
@@ -92,7 +92,7 @@ def _of_ball(d: Floats, a: float, w: float, t: float) -> float:  # pragma: no co
     return float(grown ** (d[EXPONENT] + 1.0)) if grown > 0.0 else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _of_roller(row: PackedRow, b: float, c: float) -> float:  # pragma: no cover - compiled
     """Mean of the power n + 1 of the approach along a roller; its table is of n - 1."""
     d, total = row.data, 0.0
@@ -110,7 +110,7 @@ def _of_roller(row: PackedRow, b: float, c: float) -> float:  # pragma: no cover
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _along(b: float, rise: float, p: float) -> float:  # pragma: no cover - compiled
     """Mean of (b + rise x)_+^p over x from -1/2 to 1/2."""
     half = 0.5 * abs(rise)

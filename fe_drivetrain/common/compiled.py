@@ -10,7 +10,7 @@ import os
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from typing import Any, TypeVar
+from typing import Any, TypeVar, overload
 
 import numba
 import numpy as np
@@ -50,7 +50,15 @@ def njit(**options: Any) -> Callable[[_F], _F]:
     return compiled
 
 
-def inner_loop(function: _F) -> _F:
+@overload
+def inner_loop(function: _F) -> _F: ...
+
+
+@overload
+def inner_loop(function: None = None, **options: Any) -> Callable[[_F], _F]: ...
+
+
+def inner_loop(function: Any = None, **options: Any) -> Any:
     """Compile a function for other compiled loops alone.
 
     What lets Python and C call a loop takes as long to compile as the loop itself, where it takes
@@ -60,14 +68,16 @@ def inner_loop(function: _F) -> _F:
     ----------
     function : callable
         With types that numba knows. Division by zero gives infinity, as in NumPy.
+    **options : Any
+        Others of `numba.njit`, where the function is not given: as `njit` it is a decorator then.
 
     Returns
     -------
     callable
         What a function that `njit` compiles may call.
     """
-    made = njit(cache=True, error_model="numpy", no_cpython_wrapper=True)
-    return made(function)
+    made = njit(**{"cache": True, "error_model": "numpy", "no_cpython_wrapper": True} | options)
+    return made if function is None else made(function)
 
 
 def places(count: int, first: int = 0) -> Sequence[int]:

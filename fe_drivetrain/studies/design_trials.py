@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from typing import Any
+from contextlib import suppress
+from typing import Any, cast
 
 import numpy as np
 
@@ -14,11 +15,11 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.common.reading import changed
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.drivetrain_file.scene import Scene, with_materials
 from fe_drivetrain.shafts.response.cached import whole_content
 from fe_drivetrain.shafts.response.solution_keys import solved_by
 from fe_drivetrain.shafts.uncertainty.kept_rows import EVERY
-from fe_drivetrain.shafts.uncertainty.sampling import with_values
+from fe_drivetrain.shafts.uncertainty.sampling import FINER, with_values
 from fe_drivetrain.studies.design_quantities import DesignQuantities
 from fe_drivetrain.turbine_loads.hub_loads.recorded import recorded_files
 from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_digest
@@ -113,8 +114,16 @@ class DesignTrials:
         base, values = self.asked.drivetrain, self.values_at(at)
         if isinstance(base, Scene):
             # another mesh of a housing would make a step in what is smooth otherwise
-            return with_values(base, values).model_copy(update={"mesh": base.mesh})
+            return self._built(values).model_copy(update={"mesh": base.mesh})
         return changed(base, values, "drivetrain")
+
+    def _built(self, values: Mapping[str, Any]) -> Scene:
+        """A scene as `with_values` makes it, but for its mesh sizes, which are not looked for."""
+        base = cast("Scene", self.asked.drivetrain)
+        finest = base.model_copy(update={"mesh": base.mesh.scaled(FINER[-1])})
+        with suppress(InputError):
+            return changed(with_materials(finest), values, "scene")
+        return with_values(base, values)
 
     def quantities(self, at: Floats) -> dict[str, Floats] | None:
         """Every quantity of the design at a place; None of one that cannot be built.

@@ -111,7 +111,8 @@ FAULTS = [
 def test_a_wrong_sign_of_one_term_of_the_equations_breaks_the_balance(
     line: str, fault: str
 ) -> None:
-    source = re.sub(r"^@njit\(.*\)$", "", inspect.getsource(kernel), flags=re.MULTILINE)
+    compiled = re.compile(r"^@(?:njit|inner_loop)\(.*\)$", re.MULTILINE)
+    source = compiled.sub("", inspect.getsource(kernel))
     assert source.count(line) == 1
     names = dict(vars(kernel))
     exec(source.replace(line, fault), names)

@@ -20,7 +20,7 @@ import numpy as np
 from scipy import linalg
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.common.compiled import njit
+from fe_drivetrain.common.compiled import inner_loop, njit
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.threads import one_blas_thread
@@ -242,7 +242,7 @@ def _weights(
     )
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _times(W: Floats, x: Floats, y: Floats) -> None:  # pragma: no cover - compiled
     """``W x`` into y."""
     if W.shape[1] > MANY:
@@ -255,7 +255,7 @@ def _times(W: Floats, x: Floats, y: Floats) -> None:  # pragma: no cover - compi
         y[i] = total
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _forces(laws: Laws, t: float, i: int, m: Memory) -> None:  # pragma: no cover - compiled
     """Forces of laws at node i, and their tangents."""
     r, y = m.values.shape[2], m.values[i]
@@ -264,7 +264,7 @@ def _forces(laws: Laws, t: float, i: int, m: Memory) -> None:  # pragma: no cove
         m.forces[i * r + k] = y[D, k]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _predict(w: Weights, m: Memory) -> None:  # pragma: no cover - compiled
     """Forces at the nodes as those of the step before go on."""
     s, r = m.values.shape[0], m.values.shape[2]
@@ -277,7 +277,7 @@ def _predict(w: Weights, m: Memory) -> None:  # pragma: no cover - compiled
                 m.forces[i * r + k] += w.ahead[i, j] * m.last[j]
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _rows(w: Weights, values: Floats, d: Floats, v: Floats) -> None:  # pragma: no cover - compiled
     """Values of the rows and their rates at all nodes but the first, from forces d."""
     r = values.shape[2]
@@ -289,7 +289,7 @@ def _rows(w: Weights, values: Floats, d: Floats, v: Floats) -> None:  # pragma: 
             values[i, ZR, k] = (v[FREE, first + r + k] - v[FOUND, first + r + k]) / w.step
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _unbalance(
     w: Weights, values: Floats, d: Floats, v: Floats, scale: Floats, left: Floats
 ) -> float:  # pragma: no cover - compiled
@@ -310,7 +310,7 @@ def _unbalance(
     return most
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _jacobian(w: Weights, tangents: Floats, A: Floats) -> None:  # pragma: no cover - compiled
     """I + weights times tangents, into A."""
     r, nodes = tangents.shape[1], tangents.shape[0] - 1
@@ -329,7 +329,7 @@ def _jacobian(w: Weights, tangents: Floats, A: Floats) -> None:  # pragma: no co
                             )
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _newton(
     laws: Laws,
     t: float,
@@ -382,7 +382,8 @@ def _march(
         _forces(laws, begin, int(np.int64(0)), m)
         for i in range(r, s * r):
             m.forces[i] = m.forces[i % r]
-    records[0] = x[:states]
+    for j in range(states):  # slices would have their faults compiled, too
+        records[0, j] = x[j]
     for step in range(1, steps + 1):
         t = begin + (step - 1) * w.step
         for j in range(p):
@@ -404,4 +405,5 @@ def _march(
         for j in range(states):
             x[j] = end[j]
         if step % every == 0:
-            records[step // every] = end
+            for j in range(states):
+                records[step // every, j] = end[j]

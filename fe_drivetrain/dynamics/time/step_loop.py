@@ -182,7 +182,7 @@ def _free_step(
     am, af, n, r = b[6], b[7], x.shape[1], y.shape[1]
     if af != 0.0:
         _inside(model, w, INSIDE)
-    if turning is not None:
+    if turning is not None and len(turning.orders) > 0:
         turn(turning, m, t)
         _square(m, STIFFNESS, x, U, x, KU)
         _times(m.squares, DRIFT, x, U, x, DU)
@@ -304,7 +304,7 @@ def _begin(
 ) -> None:  # pragma: no cover - compiled
     """Forces and motions at the beginning of a run."""
     m, x, y, sums, tangent = model.matrices, w.vectors, w.rows, w.sums, w.squares[0]
-    if turning is not None:
+    if turning is not None and len(turning.orders) > 0:
         turn(turning, m, t)
         _times(m.squares, DRIFT, x, U, x, DU)
     _square(m, MASS, x, V, x, MV)
@@ -325,7 +325,7 @@ def _begin(
             bearing_forces(
                 rolling, 0.0, int(np.int64(0)), y, tangent, w.bearings, w.resisted, w.scratch
             )
-    if turning is not None:
+    if turning is not None and len(turning.orders) > 0:
         _powers(model, turning, w)
 
 
@@ -395,7 +395,7 @@ def march(
     ----------
     span, model, rolling, turning, drive, stop : NamedTuple
         Steps, what moves and acts, loads and events; None of bearings and rows that turn where
-        there are none.
+        there are neither. Where there are bearings alone, the rows that turn are `NOTHING_TURNS`.
     w, kept : Work, Kept
         Memory, zero but for displacements, velocities and accelerations, which become those of the
         end, with those before the last step behind them; and records, overwritten.
@@ -431,7 +431,7 @@ def march(
             taken = _end_step(model, w)
             if rows:
                 taken += _end_rows(model, w)
-            if turning is not None:
+            if turning is not None and len(turning.orders) > 0:
                 _turned(model, turning, w)
             else:
                 w.sums[0, DISSIPATED] += taken - half * (w.sums[1, FOLLOWED] + w.sums[0, FOLLOWED])

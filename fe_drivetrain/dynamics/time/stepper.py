@@ -36,7 +36,7 @@ from fe_drivetrain.dynamics.time.schemes import Scheme
 from fe_drivetrain.dynamics.time.sparse_steps import NO_SPARSE, sparse_of
 from fe_drivetrain.dynamics.time.spring_forces import SpringForces, spring_forces
 from fe_drivetrain.dynamics.time.step_loop import march
-from fe_drivetrain.dynamics.time.turning_rows import Matrices, Turning, constrain
+from fe_drivetrain.dynamics.time.turning_rows import NOTHING_TURNS, Matrices, Turning, constrain
 
 TOLERANCE = 1e-10
 """Tolerance of Newton's method: change of an elongation over its maximum so far."""
@@ -322,8 +322,9 @@ def run_steps(
     state[U], state[V], state[A] = begin.q, begin.velocity, begin.acceleration
     state[U0 : A0 + 1] = state[U : A + 1]
     model, turning = stepper.model, stepper.turning
-    # what a run does not have is not compiled for it
-    rolling = stepper.rolling if b or turning is not None else None
+    rolling = None
+    if b or turning is not None:  # what a run has nothing of is not compiled for it
+        rolling, turning = stepper.rolling, turning or NOTHING_TURNS
     done = march(span, model, rolling, turning, drive, stop, work, kept, counts)
     dt = model.matrices.dt
     end, before = (

@@ -63,6 +63,24 @@ class Turning(NamedTuple):
     slopes: Floats
 
 
+NOTHING_TURNS = Turning(
+    np.zeros(0),
+    np.zeros((0, 0)),
+    np.zeros(0),
+    np.zeros((0, 0)),
+    np.zeros((4, 0)),
+    np.zeros((0, 0)),
+    np.zeros((2, 0), dtype=np.int64),
+    np.zeros((2, 0), dtype=np.int64),
+    np.zeros((2, 0, 0)),
+    np.zeros((0, 0)),
+)
+"""No rows that turn: orders, of which others have two at least, are none.
+
+Loops on rolling bearings take it, so that these are compiled once, whether rows turn or not.
+"""
+
+
 @inner_loop
 def _sum(
     orders: Floats, waves: Floats, t: float, now: Floats, slopes: Floats

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.common.compiled import njit
+from fe_drivetrain.common.compiled import inner_loop, njit
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.threads import one_blas_thread
 
@@ -109,7 +109,7 @@ def _sweep(
     return K, dofs, sizes, gone, values
 
 
-@njit(cache=True, fastmath=True)
+@inner_loop(error_model="python", fastmath=True)
 def _element(gram: Floats, law: Floats, K: Floats) -> None:
     """K of `condensed` of one element, what is right of the diagonal; overwrites K."""
     k, s = law.shape[0], law.shape[2]
@@ -222,7 +222,7 @@ def _users(ids: Ints, kept: int) -> Ints:
     return users
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def _of_element(ids: Ints, seen: Ints) -> Ints:
     """Degrees of freedom that an element brings to its front; each is seen once."""
     brought = np.empty(len(ids), dtype=np.int64)
@@ -235,7 +235,7 @@ def _of_element(ids: Ints, seen: Ints) -> Ints:
     return brought[:n]
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def _of_both(of_a: Ints, by_a: Ints, of_b: Ints, by_b: Ints, seen: Ints) -> Ints:
     """Degrees of freedom of two fronts, and in ``seen`` how many elements have brought each."""
     brought = np.empty(len(of_a) + len(of_b), dtype=np.int64)
@@ -252,7 +252,7 @@ def _of_both(of_a: Ints, by_a: Ints, of_b: Ints, by_b: Ints, seen: Ints) -> Ints
     return brought[:n]
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def _placed(brought: Ints, users: Ints, seen: Ints, place: Ints) -> tuple[int, Ints, Ints]:
     """Place in the front of each degree of freedom, those that are complete first.
 
@@ -278,7 +278,7 @@ def _placed(brought: Ints, users: Ints, seen: Ints, place: Ints) -> tuple[int, I
     return gone, left, by
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def _of_kept(found: Floats, dofs: Ints, kept: int) -> Floats:
     """Stiffness of what is kept, whole, from the upper triangle of the last front."""
     result = np.zeros((kept, kept))
@@ -288,7 +288,7 @@ def _of_kept(found: Floats, dofs: Ints, kept: int) -> Floats:
     return result
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def _joined(parts: Sequence[Any]) -> Any:
     length = 0
     for part in parts:
@@ -302,7 +302,7 @@ def _joined(parts: Sequence[Any]) -> Any:
     return whole
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def _add_element(front: Floats, K: Floats, dofs: Ints, shares: Floats, place: Ints) -> None:
     for i in range(len(K)):
         if dofs[i] < 0:
@@ -322,7 +322,7 @@ def _add_element(front: Floats, K: Floats, dofs: Ints, shares: Floats, place: In
                 front[a, a] += value if i == j else 2.0 * value
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def _add(front: Floats, matrix: Floats, dofs: Ints, place: Ints) -> None:
     for i in range(len(dofs)):
         a = place[dofs[i]]
@@ -334,7 +334,7 @@ def _add(front: Floats, matrix: Floats, dofs: Ints, place: Ints) -> None:
                 front[b, a] += matrix[i, j]
 
 
-@njit(cache=True, fastmath=True)
+@inner_loop(error_model="python", fastmath=True)
 def _eliminate(A: Floats, count: int) -> bool:
     """Cholesky of the first `count` rows, in panels; the rest becomes its Schur complement.
 
@@ -364,7 +364,7 @@ def _eliminate(A: Floats, count: int) -> bool:
     return True
 
 
-@njit(cache=True, fastmath=True)
+@inner_loop(error_model="python", fastmath=True)
 def _inverse_of_root(A: Floats) -> bool:
     """Overwrite a symmetric block, given right of its diagonal, by U^-1 where A = U^T U."""
     n = len(A)

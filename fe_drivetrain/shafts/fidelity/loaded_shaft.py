@@ -25,7 +25,8 @@ from fe_drivetrain.shafts.fidelity.ladder import point_loads
 from fe_drivetrain.shafts.fidelity.quantities import Solved
 from fe_drivetrain.shafts.fidelity.shafts import ringed_shaft
 
-_POINTS = 12  # of Gauss along a piece of an outline: exact to round-off for arcs, too
+# Gauss's rule along a piece of an outline: exact to round-off for arcs, too
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,7 +206,6 @@ def _moved(force: Floats, ahead: float) -> Floats:
 
 def _weight_in_front(shaft: Shaft, x: float) -> tuple[float, float]:
     """Volume in front of a section [m^3], and its centre on the axis [m]."""
-    nodes, weights = np.polynomial.legendre.leggauss(_POINTS)
     volume = moment = 0.0
     for segment in shaft.outer_profile():
         a, b = segment.start, segment.end
@@ -213,13 +213,13 @@ def _weight_in_front(shaft: Shaft, x: float) -> tuple[float, float]:
             continue
         if segment.centre is None:
             share = min((x - a[0]) / (b[0] - a[0]), 1.0) if b[0] != a[0] else 1.0
-            t = share * (nodes + 1.0) / 2.0
+            t = share * (_NODES + 1.0) / 2.0
             at = a[0] + t * (b[0] - a[0])
             rate = np.full(len(t), share * (b[0] - a[0]) / 2.0)
             radius = a[1] + t * (b[1] - a[1])
         else:
-            at, radius, rate = _along_arc(segment.start, segment.end, segment.centre, nodes, x)
-        part = np.pi * radius**2 * rate * weights
+            at, radius, rate = _along_arc(segment.start, segment.end, segment.centre, _NODES, x)
+        part = np.pi * radius**2 * rate * _WEIGHTS
         volume, moment = volume + float(part.sum()), moment + float(part @ at)
     stations = shaft.stations
     for piece, low, high in zip(shaft.pieces, stations, stations[1:], strict=False):

@@ -38,8 +38,10 @@ SHARE = 0.95
 
 NOTHING: Mapping[str, int] = MappingProxyType({})
 
+FINER = (0.5, 0.25, 0.125, 0.0625)
+"""Factors of mesh sizes, where a wall asks for smaller ones."""
+
 _RESAMPLES = 999
-_FINER = (0.5, 0.25, 0.125, 0.0625)  # of mesh sizes, where a wall asks for smaller ones
 _CONSTANT = 1e-9  # relative: below it no input matters to a result
 
 
@@ -196,7 +198,7 @@ def with_values(scene: Stated, values: Mapping[str, Any]) -> Stated:
     try:
         return changed(whole, values, "scene")
     except InputError:
-        for factor in _FINER:
+        for factor in FINER:
             finer = whole.model_copy(update={"mesh": scene.mesh.scaled(factor)})
             with suppress(InputError):
                 return changed(finer, values, "scene")

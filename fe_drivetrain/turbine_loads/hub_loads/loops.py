@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fe_drivetrain.common.arrays import Floats, Ints
-from fe_drivetrain.common.compiled import njit
+from fe_drivetrain.common.compiled import inner_loop, njit
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.short_repr import short_repr
 
@@ -255,7 +255,7 @@ def _closed_parts(t: Floats, z: Plane, longest: float, excursion: float) -> list
     return _one_after_another(parts, _TOUCH * longest)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_loop
 def _extremes(
     x: Floats, y: Floats, i: int, j: int, px: float, py: float
 ) -> tuple[float, float, float]:

@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.compiled import njit
+from fe_drivetrain.common.compiled import inner_loop, njit
 
 
 class Parts(NamedTuple):
@@ -170,7 +170,7 @@ def blade_sums(
             sums[4, i] += drive / 3.0
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def wake_answers(
     parts: Parts, state: Floats, sums: Floats, free: Floats, wake: Floats, step: float
 ) -> None:

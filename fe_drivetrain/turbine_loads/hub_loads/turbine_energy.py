@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.compiled import njit
+from fe_drivetrain.common.compiled import inner_loop, njit
 from fe_drivetrain.turbine_loads.hub_loads.turbine_air import (
     FORE,
     FORE_RATE,
@@ -41,7 +41,7 @@ IN_ROTOR, IN_GENERATOR, IN_TOP, IN_BLADES, IN_SHAFT, IN_BENDING, IN_TOWER, IN_HE
 OF_AIR, OF_GENERATOR, OF_DAMPERS, OF_PITCHING, OF_TURNING, OF_LEANING, OF_CONED_WEIGHT = range(7)
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def turned(values: Floats, mode: int, angle: float) -> tuple[float, float]:
     """Components of a mode (2, 2) out of the plane of rotation and in it, after pitch."""
     c, s = math.cos(angle), math.sin(angle)
@@ -49,7 +49,7 @@ def turned(values: Floats, mode: int, angle: float) -> tuple[float, float]:
     return one * c - other * s, one * s + other * c
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def in_plane_less_stiffening(parts: Parts, a: int, b: int, angle: float) -> float:
     """G - N of two modes after pitch [kg]."""
     c, s = math.cos(angle), math.sin(angle)
@@ -78,7 +78,7 @@ def stored(parts: Parts, state: Floats, pitch: float, energy: Floats) -> None:
             add_blade(parts, state, pitch, i, energy)
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def add_blade(parts: Parts, state: Floats, pitch: float, i: int, energy: Floats) -> None:
     """Add what bending of blade i is to kinetic energy, strain and height."""
     turn = pitch + parts.pitch_errors[i]
@@ -133,7 +133,7 @@ def powers(
             add_left_out(parts, state, rates, pitch, i, power)
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def add_left_out(
     parts: Parts, state: Floats, rates: Floats, pitch: float, i: int, power: Floats
 ) -> None:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.common.arrays import Floats
-from fe_drivetrain.common.compiled import njit
+from fe_drivetrain.common.compiled import inner_loop, njit
 from fe_drivetrain.turbine_loads.hub_loads.turbine_air import (
     FORE,
     FORE_RATE,
@@ -213,7 +213,7 @@ def moving(
     loads[5] += parts.imbalance * g * sin_tilt * sin1
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def solved(matrix: Floats, right: Floats, result: Floats) -> None:
     """Three equations, symmetric and positive definite."""
     a, b, c = matrix[0]
@@ -226,7 +226,7 @@ def solved(matrix: Floats, right: Floats, result: Floats) -> None:
     result[2] = (z * right[0] + v * right[1] + w * right[2]) / whole
 
 
-@njit(cache=True)
+@inner_loop(error_model="python")
 def asked_torque(control: Control, speed: float, pitch: float) -> float:
     """Torque that `Controller.torque` asks for."""
     if speed >= control.torque_speed or pitch >= control.min_pitch:
