@@ -19,6 +19,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.kept_time import kept_seconds, working_time
 from fe_drivetrain.common.progress import silent
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.drivetrain_file.scene import Scene
@@ -47,6 +48,7 @@ from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.shafts.fidelity.shafts import condensed_shaft
 from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.shafts.response.neighbours import EVERYTHING, Neighbours, Reuse
+from fe_drivetrain.shafts.response.solved_arrays import kept_arrays
 from fe_drivetrain.shafts.response.unit_loads import Response
 
 #: Nothing is taken from the cache: times are part of the answer.
@@ -106,6 +108,8 @@ class Advice:
         Size of a reaction over that of the largest of its kind (force or moment); 1 of a stiffness.
     sizes : MeshSizes or None
         Element sizes of the assembly.
+    kept : float
+        Wall time of what was solved before: it is among the times of the levels [s].
     """
 
     quantity: Quantity
@@ -115,6 +119,7 @@ class Advice:
     springs: Mapping[str, Floats] = field(default_factory=dict)
     share: float = 1.0
     sizes: MeshSizes | None = None
+    kept: float = 0.0
 
     __repr__ = short_repr
 
@@ -206,6 +211,7 @@ def advise(
     to_the_top: bool = False,
     report: Callable[[str], object] = lambda step: None,
     shafts: Sequence[int] | None = None,
+    cache: Cache = UNCACHED,
 ) -> Advice:
     """Run levels of rising cost until the quantity is known to be within the tolerance.
 
@@ -223,6 +229,8 @@ def advise(
         Called with what is being done.
     shafts : Sequence[int] or None
         Levels of shafts on springs; where not given 1 and 2, and to the top 3, too.
+    cache : Cache
+        Where solutions may come from, with the times that they took: nowhere if not given.
 
     Raises
     ------
@@ -237,12 +245,12 @@ def advise(
         )
     length = scene.shaft.length
     results: list[LevelResult] = []
-    start = time.perf_counter()
+    start, before = working_time(), kept_seconds()
 
     def add(
         model: LevelModel, seconds: float, estimate: float, band: AssemblyBand | None = None
     ) -> bool:
-        waited = time.perf_counter() - start
+        waited = working_time() - start
         values = quantity.of(model, length)
         results.append(LevelResult(model, values, seconds, estimate, waited, band=band))
         return estimate <= tolerance and not to_the_top
@@ -258,12 +266,12 @@ def advise(
     springs: Mapping[str, Floats] = {}
     levels = ((1, 2, 3) if to_the_top else (1, 2)) if shafts is None else shafts
     if not done:
-        springs, done = _run_on_springs(scene, quantity, levels, add, report)
+        springs, done = _run_on_springs(scene, quantity, levels, add, report, cache)
     if not done:
-        # its time is a result, so it is solved
-        model, seconds, (band,) = banded_assembly(scene, [quantity], report, UNCACHED)
+        model, seconds, (band,) = banded_assembly(scene, [quantity], report, cache)
         add(model, seconds, band.half_width, band)
-    return _judged(quantity, tolerance, results, springs, scene)
+    found = _judged(quantity, tolerance, results, springs, scene)
+    return replace(found, kept=kept_seconds() - before)
 
 
 def _run_on_springs(
@@ -272,6 +280,7 @@ def _run_on_springs(
     levels: Sequence[int],
     add: Callable[[LevelModel, float, float], bool],
     report: Callable[[str], object],
+    cache: Cache,
 ) -> tuple[Mapping[str, Floats], bool]:
     """Shafts on housings that were solved apart, between two bounds of these.
 
@@ -281,9 +290,9 @@ def _run_on_springs(
     length = scene.shaft.length
     report("housings, faces in shape")
     solids: dict[tuple[str, bool], UnitSolid] = {}
-    stiff, seconds = housing_springs(scene, coupling="rigid", cache=UNCACHED, solids=solids)
+    stiff, seconds = housing_springs(scene, coupling="rigid", cache=cache, solids=solids)
     report("housings, faces on average")
-    soft = housing_springs(scene, coupling="averaged", cache=UNCACHED, solids=solids)[0]
+    soft = housing_springs(scene, coupling="averaged", cache=cache, solids=solids)[0]
     previous = None
     on_springs = ", housings as springs" if scene.bearing_units else ""
     for level in levels:
@@ -295,7 +304,7 @@ def _run_on_springs(
         if level == 3 and any(unit.ring_on_housing for unit in scene.bearing_units):
             report("housings under rings that belong to the solid shaft")
             (hard, seconds), (yielding, _) = (
-                housing_springs(scene, c, level, UNCACHED, solids) for c in ("rigid", "averaged")
+                housing_springs(scene, c, level, cache, solids) for c in ("rigid", "averaged")
             )
             bounds = hard, yielding
         model = shaft_level(scene, level, bounds[0], body)
@@ -345,7 +354,7 @@ def banded_assembly(
     LevelModel
         The assembly on the finest mesh.
     float
-        Wall time of that alone [s]; of reading it, where it was kept.
+        Wall time of that alone [s]; where it was kept, that of its solution then.
     list[AssemblyBand]
         Band of each quantity.
     """
@@ -380,7 +389,7 @@ def assembly_series(
     LevelModel
         The assembly on the finest mesh.
     float
-        Wall time of that alone [s]; of reading it, where it was kept.
+        Wall time of that alone [s]; where it was kept, that of its solution then.
     list[OnMeshes]
         Each quantity on all meshes.
     """
@@ -398,14 +407,17 @@ def assembly_series(
         levels.append(level)
         factors.append(factor)
     report(f"level 4: assembly of solids ({len(COARSER) + 1} of {len(COARSER) + 1})")
-    start = time.perf_counter()
+    start = working_time()
     level, model, response = solved_assembly(scene, cache, near[-1])
-    seconds = time.perf_counter() - start
+    seconds = working_time() - start
     sizes.append(mean_size(model.mesh))
     levels.append(level)
     factors.append(1.0)
     report("level 4: errors estimated from recovered stresses")
-    errors = recovered_errors(quantities, model, response, length)
+    if neighbours is None:
+        errors = kept_errors(quantities, model, response, length, cache)
+    else:  # whose mesh may be a moved one
+        errors = recovered_errors(quantities, model, response, length)
     series = [
         OnMeshes(
             tuple(sizes),
@@ -469,6 +481,50 @@ def recovered_errors(
             each = reaction_error(model, response, owner, rows, columns)
             found |= zip(numbers, each, strict=True)
     return [found[k] for k in range(len(quantities))]
+
+
+def kept_errors(
+    quantities: Sequence[Quantity],
+    model: Model,
+    response: Response,
+    length: float,
+    cache: Cache | None = None,
+) -> list[Floats]:
+    """`recovered_errors` of an assembly on the mesh of its scene, from the cache where they are.
+
+    Parameters
+    ----------
+    quantities : Sequence[Quantity]
+        What is asked for.
+    model, response : Model, Response
+        The solved assembly.
+    length : float
+        Length of the shaft [m].
+    cache : Cache or None
+        Where they may come from; the user's if not given.
+
+    Returns
+    -------
+    list[Floats]
+        (k,) of each quantity.
+    """
+    n = len(model.loads)
+    hub = [q.name.partition(".")[0] == "hub" for q in quantities]
+    content = {
+        "recovered errors": [
+            [q.name, [] if of_hub else q.columns(length, n).tolist()]
+            for q, of_hub in zip(quantities, hub, strict=True)
+        ],
+        "length": length,
+    }
+    rooms = {"fe_drivetrain.shafts.fidelity": {"adviser.py", "assembly_bands.py", "quantity.py"}}
+
+    def solve() -> dict[str, Floats]:
+        errors = recovered_errors(quantities, model, response, length)
+        return {str(k): error for k, error in enumerate(errors)}
+
+    arrays = kept_arrays(model.scene, content, rooms, solve, cache)
+    return [arrays[str(k)] for k in range(len(quantities))]
 
 
 def _judged(

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.common.kept_time import count_kept
 from fe_drivetrain.common.provenance import file_digest
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.solve.solvers import Diagnostics
@@ -61,6 +62,7 @@ def cached_response(
     if arrays is not None:
         try:
             kept = _from_arrays(arrays)
+            count_kept(kept.diagnostics.setup_seconds + kept.diagnostics.solve_seconds)
             return replace(kept, kept=True, entrance=model.scene.entrance)
         except (KeyError, IndexError, TypeError, ValueError):
             pass  # not as it was written: solved again below
