@@ -16,7 +16,7 @@ from fe_drivetrain.common.progress import Progress
 
 if TYPE_CHECKING:
     from fe_drivetrain.command_line.dossier_works import Work
-    from fe_drivetrain.command_line.report import ReportRequest
+    from fe_drivetrain.command_line.report_request import ReportRequest
     from fe_drivetrain.drivetrain_file.scene import Scene
     from fe_drivetrain.report.results import Results
     from fe_drivetrain.report.suite.case import Case

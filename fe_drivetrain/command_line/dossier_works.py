@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fe_drivetrain.command_line.showing import Shown
 
 if TYPE_CHECKING:
-    from fe_drivetrain.command_line.report import ReportRequest
+    from fe_drivetrain.command_line.report_request import ReportRequest
     from fe_drivetrain.drivetrain_file.scene import Scene
     from fe_drivetrain.report.suite.page import Page
     from fe_drivetrain.report.suite.run import Run

@@ -10,13 +10,13 @@ from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.comparison.convergence import grid_convergence, scattered_band
 from fe_drivetrain.elasticity.solve.error_estimate import SAFETY, recovered_work, recovery_estimate
 from fe_drivetrain.geometry import MeshSizes
-from fe_drivetrain.shafts.fidelity.adviser import recovered_errors
 from fe_drivetrain.shafts.fidelity.assembly_bands import (
     assembly_band,
     cached_reaction_errors,
     motion_error,
     reaction_error,
 )
+from fe_drivetrain.shafts.fidelity.assembly_series import recovered_errors
 from fe_drivetrain.shafts.fidelity.quantity import Quantity
 from fe_drivetrain.shafts.response.influence_fields import (
     influences_of_all_reactions,

@@ -1,10 +1,10 @@
 from .ablation import simplified as simplified
 from .adviser import advise as advise
-from .adviser import banded_assembly as banded_assembly
 from .assembly_bands import MIN_ORDER as MIN_ORDER
 from .assembly_bands import all_reaction_errors as all_reaction_errors
 from .assembly_bands import cached_reaction_errors as cached_reaction_errors
 from .assembly_bands import reaction_error as reaction_error
+from .assembly_series import banded_assembly as banded_assembly
 from .bearing_units import UnitBounds as UnitBounds
 from .bearing_units import UnitMatrices as UnitMatrices
 from .bearing_units import banded_unit as banded_unit

@@ -20,7 +20,7 @@ from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.reading import value_changes
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
 from fe_drivetrain.drivetrain_file.scene import Scene, coarser_scene
-from fe_drivetrain.shafts.fidelity.adviser import assembly_series, mesh_neighbours
+from fe_drivetrain.shafts.fidelity.assembly_series import assembly_series, mesh_neighbours
 from fe_drivetrain.shafts.fidelity.change_bands import OnMeshes, OnSprings, change_band
 from fe_drivetrain.shafts.fidelity.ladder import housing_springs, shaft_level, statics_level
 from fe_drivetrain.shafts.fidelity.quantities import NOISE

@@ -19,8 +19,8 @@ from fe_drivetrain.common.components import MOTIONS
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.drivetrain_file.scene import Scene
-from fe_drivetrain.shafts.fidelity.adviser import banded_assembly
 from fe_drivetrain.shafts.fidelity.assembly_bands import AssemblyBand
+from fe_drivetrain.shafts.fidelity.assembly_series import banded_assembly
 from fe_drivetrain.shafts.fidelity.ladder import TITLES, Cost, LevelModel
 from fe_drivetrain.shafts.fidelity.quantities import Number, Solved, numbers, without_zeros
 from fe_drivetrain.shafts.fidelity.quantity import Quantity

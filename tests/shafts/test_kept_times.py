@@ -1,0 +1,68 @@
+"""What is kept takes, where a time is asked for, as long as when it was solved."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from coarse_scenes import coarse_scene
+
+from fe_drivetrain.common import cache
+from fe_drivetrain.common.kept_time import count_kept, kept_seconds, working_time
+from fe_drivetrain.pages.advise import ladder
+from fe_drivetrain.report.results import Text
+from fe_drivetrain.shafts.fidelity.ladder import housing_springs
+from fe_drivetrain.shafts.response.cached import cached_response
+from fe_drivetrain.shafts.response.model import build_model, mesh_scene
+from fe_drivetrain.studies.level_advice import AdviseResult, advise
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(cache.CACHE_VARIABLE, str(tmp_path / "cache"))
+
+
+def statements(result: AdviseResult) -> list[str]:
+    return [item.text for item in ladder(result).items if isinstance(item, Text)]
+
+
+def test_the_clock_goes_on_by_what_was_read() -> None:
+    start, before = working_time(), kept_seconds()
+    count_kept(100.0)
+    assert kept_seconds() - before == 100.0
+    assert 100.0 <= working_time() - start < 110.0
+
+
+def test_springs_that_are_kept_took_what_they_took() -> None:
+    scene = coarse_scene("bonded")
+    solved, seconds = housing_springs(scene, "rigid")
+    before = kept_seconds()
+    kept, again = housing_springs(scene, "rigid")
+    then = kept_seconds() - before
+    assert 0.0 < then <= seconds
+    assert then <= again
+    for name, stiffness in solved.items():
+        np.testing.assert_array_equal(kept[name], stiffness)
+
+
+def test_advice_on_what_is_kept_is_the_same_with_the_times_of_then() -> None:
+    scene = coarse_scene("bonded")
+    response = cached_response(build_model(scene, mesh_scene(scene)))
+    took = response.diagnostics.setup_seconds + response.diagnostics.solve_seconds
+
+    def asked(kept: bool) -> AdviseResult:
+        return advise(scene, "main_bearing.My", 1e-4, kept=kept)
+
+    now, first, second = asked(False), asked(True), asked(True)
+    assert now.advice.top.model.level == 4
+    assert now.advice.kept == 0.0
+    assert took <= first.advice.kept <= second.advice.kept
+    assert second.advice.top.seconds >= took
+    assert second.advice.top.waited >= second.advice.kept
+    for other in (first, second):
+        assert other.level == now.level
+        assert other.effects == now.effects
+        for mine, its in zip(other.advice.results, now.advice.results, strict=True):
+            np.testing.assert_array_equal(mine.values, its.values)
+            np.testing.assert_equal((mine.estimate, mine.error), (its.estimate, its.error))
+    assert not any("solved before" in text for text in statements(now))
+    assert any("solved before" in text for text in statements(second))
