@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fe_drivetrain.command_line.dossier_works import dossier_works
+from fe_drivetrain.command_line.dossier_works import dossier_works, main_reaction
 from fe_drivetrain.command_line.showing import Shown
 from fe_drivetrain.command_line.terminal import as_typed
 from fe_drivetrain.common.processes import Processes
@@ -265,8 +266,26 @@ def _side_by_side(
     def follow(chain: Sequence[str]) -> dict[str, Results]:
         return {name: _made_there(dossier, name, own, content, processes) for name in chain}
 
+    def solve(*arguments: Any) -> dict[str, Results]:
+        processes.start(_solve_coarser, *arguments).result()
+        return {}
+
+    works: list[Callable[[], dict[str, Results]]] = [partial(follow, chain) for chain in chains]
+    if "reactions" in chains[0]:
+        from fe_drivetrain.shafts.fidelity.adviser import is_decided_by_statics
+        from fe_drivetrain.shafts.fidelity.assembly_bands import COARSER
+        from fe_drivetrain.shafts.fidelity.quantity import Quantity
+        from fe_drivetrain.studies.scene_description import quick_scene
+
+        coarsest, coarser = COARSER
+        scene = quick_scene(dossier.scene) if dossier.asked.quick else dossier.scene
+        # when the first two are at work; the process of reactions comes to it later
+        works.insert(processes.count, partial(solve, scene, coarser))
+        asked = Quantity(main_reaction(dossier.scene))
+        if "model" in chains[0] and not is_decided_by_statics(dossier.scene, asked):
+            works.append(partial(solve, dossier.scene, coarsest))
     with ThreadPoolExecutor(processes.count, "chain") as threads:
-        waiting = [threads.submit(follow, chain) for chain in chains]
+        waiting = [threads.submit(work) for work in works]
         try:
             found = [job.result() for job in as_completed(waiting)]
         except BaseException as error:
@@ -275,6 +294,14 @@ def _side_by_side(
             processes.end(error)  # for what the threads wait for
             raise
     return {name: results for one in found for name, results in one.items()}
+
+
+def _solve_coarser(report: Progress, scene: Scene, factor: float) -> None:
+    """Solve what reactions or the choice of a model take from the cache when they come to it."""
+    from fe_drivetrain.shafts.fidelity.assembly_series import solve_coarser
+
+    report("coarser mesh")
+    solve_coarser(scene, factor)
 
 
 def _made_there(

@@ -21,6 +21,17 @@ TOLERANCE = 0.05
 """Within which the cheapest model has to have the first bearing's vertical force."""
 
 
+def main_reaction(scene: Scene) -> str:
+    """The quantity that the cheapest model has to have: the first bearing's vertical force.
+
+    Parameters
+    ----------
+    scene : Scene
+        The drivetrain.
+    """
+    return f"{scene.bearing_names[0]}.Fz"
+
+
 def dossier_works(
     asked: ReportRequest, scene: Scene, own: StudyLoads | None = None
 ) -> dict[str, Work]:
@@ -63,7 +74,6 @@ def dossier_works(
 
     channels, rpm = asked.channels, asked.rotor_speed
     catalogues = tuple(asked.catalogue or ())
-    first = f"{scene.bearing_names[0]}.Fz"
 
     def write_reactions(run: Run, page: Page, result: StudyResult) -> None:
         assert own is not None
@@ -105,7 +115,10 @@ def dossier_works(
         **strength_works(asked, scene),
         **turning_works(asked, scene),
         "model": Shown(
-            lambda run: advise(scene, first, TOLERANCE, kept=True, report=run.report), show_advise
+            lambda run: advise(
+                scene, main_reaction(scene), TOLERANCE, kept=True, report=run.report
+            ),
+            show_advise,
         ),
         "check": Shown(
             lambda run: check(scene, catalogues, report=run.report), show_check, draws=True

@@ -10,8 +10,11 @@ from fe_drivetrain.common import cache
 from fe_drivetrain.common.kept_time import count_kept, kept_seconds, working_time
 from fe_drivetrain.pages.advise import ladder
 from fe_drivetrain.report.results import Text
+from fe_drivetrain.shafts.fidelity.adviser import is_decided_by_statics
+from fe_drivetrain.shafts.fidelity.assembly_series import solve_coarser
 from fe_drivetrain.shafts.fidelity.ladder import housing_springs
-from fe_drivetrain.shafts.response.cached import cached_response
+from fe_drivetrain.shafts.fidelity.quantity import Quantity
+from fe_drivetrain.shafts.response.cached import cached_response, is_kept
 from fe_drivetrain.shafts.response.model import build_model, mesh_scene
 from fe_drivetrain.studies.level_advice import AdviseResult, advise
 
@@ -66,3 +69,23 @@ def test_advice_on_what_is_kept_is_the_same_with_the_times_of_then() -> None:
             np.testing.assert_equal((mine.estimate, mine.error), (its.estimate, its.error))
     assert not any("solved before" in text for text in statements(now))
     assert any("solved before" in text for text in statements(second))
+
+
+def test_a_coarser_assembly_is_solved_ahead_once() -> None:
+    scene = coarse_scene("bonded")
+    coarser = scene.model_copy(update={"mesh": scene.mesh.scaled(1.35)})
+    mesh = mesh_scene(coarser)
+    assert not is_kept(coarser, mesh)
+    solve_coarser(scene, 1.35)
+    assert is_kept(coarser, mesh)
+    assert cached_response(build_model(coarser, mesh)).kept
+    before = kept_seconds()
+    solve_coarser(scene, 1.35)
+    assert kept_seconds() == before  # it is not even read
+    solve_coarser(scene, 50.0)  # too coarse for a wall: who needs it says so
+
+
+def test_statics_decides_on_reactions_alone_that_nothing_else_shares() -> None:
+    spherical, bonded = coarse_scene("spherical"), coarse_scene("bonded")
+    assert is_decided_by_statics(spherical, Quantity("main_bearing.Fz"))
+    assert not is_decided_by_statics(bonded, Quantity("main_bearing.My"))

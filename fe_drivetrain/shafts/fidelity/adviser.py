@@ -248,7 +248,7 @@ def advise(
 
     report("level 0: statics")
     model = statics_level(scene)
-    decided = bool(np.isfinite(quantity.of(model, length)).all())
+    decided = _is_known(model, quantity, length)
     done = add(model, model.cost.seconds, 0.0 if decided else float("nan"))
     if not done and scene.bearing_units:
         report("level 1: beam, rigid housings")
@@ -263,6 +263,23 @@ def advise(
         add(model, seconds, band.half_width, band)
     found = _judged(quantity, tolerance, results, springs, scene)
     return replace(found, kept=kept_seconds() - before)
+
+
+def is_decided_by_statics(scene: Scene, quantity: Quantity) -> bool:
+    """Whether equilibrium alone gives a quantity, so that no other level is run for it.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    quantity : Quantity
+        What is asked for.
+    """
+    return _is_known(statics_level(scene), quantity, scene.shaft.length)
+
+
+def _is_known(model: LevelModel, quantity: Quantity, length: float) -> bool:
+    return bool(np.isfinite(quantity.of(model, length)).all())
 
 
 def _run_on_springs(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -23,7 +24,8 @@ from fe_drivetrain.shafts.fidelity.assembly_bands import (
 from fe_drivetrain.shafts.fidelity.change_bands import OnMeshes
 from fe_drivetrain.shafts.fidelity.ladder import LevelModel, solved_assembly
 from fe_drivetrain.shafts.fidelity.quantity import Quantity
-from fe_drivetrain.shafts.response.model import Model
+from fe_drivetrain.shafts.response.cached import is_kept
+from fe_drivetrain.shafts.response.model import Model, mesh_scene
 from fe_drivetrain.shafts.response.neighbours import EVERYTHING, Neighbours, Reuse
 from fe_drivetrain.shafts.response.solved_arrays import kept_arrays
 from fe_drivetrain.shafts.response.unit_loads import Response
@@ -118,6 +120,25 @@ def assembly_series(
         for quantity, error in zip(quantities, errors, strict=True)
     ]
     return level, seconds, series
+
+
+def solve_coarser(scene: Scene, factor: float) -> None:
+    """Solve an assembly on a coarser mesh, for who takes it from the cache later.
+
+    Nothing is done where it is kept already, or nothing can be, nor of a mesh too coarse for a
+    wall.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    factor : float
+        On its mesh sizes, as of `COARSER`.
+    """
+    coarser = scene.model_copy(update={"mesh": scene.mesh.scaled(factor)})
+    with suppress(InputError):
+        if not is_kept(coarser, mesh_scene(coarser)):
+            solved_assembly(coarser)
 
 
 def mesh_neighbours(reuse: Reuse = EVERYTHING) -> tuple[Neighbours, ...]:

@@ -89,16 +89,18 @@ def kept_together(
         "made by": solved_by(),
         "code": source_hash(rooms),
     }
-    found = [used.load("solutions", {**content, **common}) for content in contents]
-    if all(arrays is not None for arrays in found):
+    whole = [{**content, **common} for content in contents]
+    with used.one_at_a_time("solutions", whole[0]):
+        found = [used.load("solutions", content) for content in whole]
         kept = [arrays for arrays in found if arrays is not None]
-        for arrays in kept:
-            count_kept(float(arrays.pop(_SECONDS)))
-        return kept
-    solved = []
-    for content, (arrays, seconds) in zip(contents, _timed(solve), strict=True):
-        used.keep("solutions", {**content, **common}, {**arrays, _SECONDS: np.array(seconds)})
-        solved.append(arrays)
+        if len(kept) == len(found):
+            for arrays in kept:
+                count_kept(float(arrays.pop(_SECONDS)))
+            return kept
+        solved = []
+        for content, (arrays, seconds) in zip(whole, _timed(solve), strict=True):
+            used.keep("solutions", content, {**arrays, _SECONDS: np.array(seconds)})
+            solved.append(arrays)
     return solved
 
 
