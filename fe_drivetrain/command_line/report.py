@@ -30,7 +30,7 @@ def report_command(context: typer.Context, asked: ReportRequest) -> int:
 
     One folder with a page for each question and a first page that answers all of them. Pages that
     the same program has made of the same drivetrain, files and options are kept; all others are
-    made again.
+    made again, side by side in two processes where there are cores for them.
 
     The exit status is 0 if every check passes.
     """

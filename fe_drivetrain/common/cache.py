@@ -6,6 +6,7 @@ the user's cache folder, which may be deleted at any time; the environment varia
 whole key and digests of all that is in it, which are compared when it is read (`kept_files`).
 Nothing here ever fails a run: what cannot be read, is damaged, or is of something else is made
 again, which the logger of this module says, and what cannot be written is not kept.
+Processes that want the same solution at the same time make it once (`Cache.one_at_a_time`).
 """
 
 from __future__ import annotations
