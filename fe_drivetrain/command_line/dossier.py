@@ -44,8 +44,8 @@ PROCESSES = 2
 
 _CHAINS = (
     ("reactions", "model"),  # which takes the assembly that the other has solved
-    ("life",),
     ("stop",),
+    ("life",),
     ("gears",),
     ("strength",),
     ("modes",),
