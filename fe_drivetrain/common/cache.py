@@ -6,6 +6,7 @@ the user's cache folder, which may be deleted at any time; the environment varia
 whole key and digests of all that is in it, which are compared when it is read (`kept_files`).
 Nothing here ever fails a run: what cannot be read, is damaged, or is of something else is made
 again, which the logger of this module says, and what cannot be written is not kept.
+Processes that want the same solution at the same time make it once (`Cache.one_at_a_time`).
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from typing import Any, Literal, TypeVar, get_args
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.array_records import as_arrays, from_arrays
-from fe_drivetrain.common.files import atomic_path, remove_abandoned
+from fe_drivetrain.common.files import atomic_path, hold, let_go, remove_abandoned
 from fe_drivetrain.common.kept_files import SUFFIX, UnfitError, read_kept, write_kept
 
 CACHE_VARIABLE = "FE_DRIVETRAIN_CACHE"
@@ -49,7 +50,7 @@ _OFF = ("off", "0", "no", "false")
 # Only names of our own making are ever deleted: the user may have named any folder.
 # Those of earlier versions of this program, which end in .npz, are dropped as they grow old.
 _OURS = re.compile(r"[0-9a-f]{32,64}\.(arrays|npz)")
-_UNFINISHED = r"\.[0-9a-f]{32,64}\.(arrays|npz)\.[0-9a-f]{32}\.tmp"
+_UNFINISHED = r"\.[0-9a-f]{32,64}\.((arrays|npz)\.[0-9a-f]{32}\.tmp|lock)"
 
 _log = logging.getLogger(__name__)
 
@@ -115,6 +116,34 @@ class Cache:
             self._drop_oldest()
         except OSError:
             return
+
+    @contextmanager
+    def one_at_a_time(self, kind: Kind, content: Mapping[str, Any]) -> Iterator[None]:
+        """Let no other process in here for the same content: who waits finds what was kept.
+
+        A process that dies lets go. On a disk that knows no locks none is waited for.
+
+        Parameters
+        ----------
+        kind : Kind
+            What it is.
+        content : Mapping[str, Any]
+            All that it depends on.
+        """
+        file, lock = self._file(kind, content), None
+        if file is not None:
+            place = file.with_name(f".{file.stem}.lock")
+            with suppress(OSError):
+                place.parent.mkdir(parents=True, exist_ok=True)
+                while lock is None:
+                    place.touch(0o600)
+                    lock = hold(place)
+        try:
+            yield
+        finally:
+            if lock is not None:
+                place.unlink(missing_ok=True)
+                let_go(lock)
 
     def load_record(self, kind: Kind, content: Mapping[str, Any], form: type[_T]) -> _T | None:
         """The dataclass that is kept for this content, or None where there is nothing sound.

@@ -139,7 +139,7 @@ class Processes:
                     future.result()
         finally:
             if self.count:
-                self._end(error or CancelledError())
+                self.end(error or CancelledError())
                 self._threads.shutdown(cancel_futures=True)
                 printed = "".join(worker.printed() for worker in self._workers)
                 self._stack.close()
@@ -177,11 +177,11 @@ class Processes:
                 self._report("", worker.lane)
             self._idle.put(worker)
         if not self._each_for_itself:
-            self._end(error)
+            self.end(error)
         raise self._cause or error
 
-    def _end(self, cause: BaseException) -> None:
-        """End all processes at once; those without a job have nothing to lose."""
+    def end(self, cause: BaseException) -> None:
+        """End all processes at once; what was handed in and is not done raises the cause."""
         with self._lock:
             self._cause = self._cause or cause
             for worker in self._workers:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_drivetrain.pages.drivetrain_sketch import drivetrain_sketch
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.results import Cell, Chart, Section, Table, Text
 from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.suite.run import Run
@@ -86,6 +87,8 @@ def ladder(result: AdviseResult) -> Section:
         table,
         Text(text=_NOTE),
     ]
+    if advice.kept:
+        items.append(Text(text=_KEPT.format(formatted(advice.kept, 2))))
     if advice.quantity.load is None and len(advice.top.values) > 1:
         items.append(Text(text=_EACH_LOAD))
     return Section(title="Model levels", items=items)
@@ -127,6 +130,11 @@ _NOTE = (
     "tolerance. Time by itself: what the value needs, with meshing, unless the mesh came from the "
     "cache, and without the estimate of its error. Found after: from the beginning, estimates "
     "included."
+)
+_KEPT = (
+    "What had been solved before, by another study or for an earlier page, was not solved again: "
+    "of it the times are those that it took then, on this kind of machine with as many threads, "
+    "{}\u00a0s in all."
 )
 _EACH_LOAD = (
     "No load was given: the levels are compared by the response of the quantity to each of the six "

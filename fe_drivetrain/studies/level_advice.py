@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fe_drivetrain.common.arrays import rounded
+from fe_drivetrain.common.cache import user_cache
 from fe_drivetrain.common.progress import Progress, silent
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.reading import with_sections
@@ -23,6 +24,7 @@ from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.report.suite.records import Record
 from fe_drivetrain.shafts.fidelity.ablation import Effect, effects
 from fe_drivetrain.shafts.fidelity.advice import Advice, LevelResult
+from fe_drivetrain.shafts.fidelity.adviser import UNCACHED
 from fe_drivetrain.shafts.fidelity.adviser import advise as run_levels
 from fe_drivetrain.shafts.fidelity.quantity import (
     ERROR_AGAINST_LAST,
@@ -111,6 +113,7 @@ def advise(
     load: Mapping[str, float] | None = None,
     to_the_top: bool = False,
     *,
+    kept: bool = False,
     report: Progress = silent,
 ) -> AdviseResult:
     """Find the cheapest level that is accurate enough, and rank the details of the scene.
@@ -128,6 +131,9 @@ def advise(
         Load that causes a reaction, by component [N, N m, m/s^2]; None for each hub load by itself.
     to_the_top : bool
         Whether to run every level, even if a cheaper one is accurate enough.
+    kept : bool
+        Whether solutions may come from the cache, with the times that they took when they were
+        solved: then a dossier solves nothing twice. Otherwise all is solved and timed now.
     report : Progress
         Called with the name of each step as it begins.
 
@@ -142,7 +148,9 @@ def advise(
     found.about(scene)
     asked = Quantity(quantity, None if load is None else named_load(scene, load))
     with steps.step("model levels"):
-        advice = run_levels(scene, asked, tolerance, to_the_top, report)
+        advice = run_levels(
+            scene, asked, tolerance, to_the_top, report, cache=user_cache() if kept else UNCACHED
+        )
     chosen = None if advice.chosen is None else advice.results[advice.chosen]
     level = 2 if chosen is not None and chosen.model.level == 2 else 1
     ranked: list[Effect] = []

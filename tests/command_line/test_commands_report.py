@@ -11,7 +11,9 @@ from answer_rules import broken_rules
 from tiny_case import Result
 
 from fe_drivetrain.command_line import printing
-from fe_drivetrain.command_line.report import ReportRequest, content_of, turning_works
+from fe_drivetrain.command_line.dossier import content_of
+from fe_drivetrain.command_line.dossier_works import turning_works
+from fe_drivetrain.command_line.report_request import ReportRequest
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.drivetrain_file import change_scene, library_scene, read_drivetrain
 from fe_drivetrain.drivetrain_file.without_weight import weightless

@@ -1,6 +1,9 @@
 """What is kept is the same to the last bit, and a cache can do no harm."""
 
 import os
+import subprocess
+import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -55,6 +58,77 @@ def meshings(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
     monkeypatch.setattr(cached, "generate", counted)
     return made
+
+
+# --- one process at a time ----------------------------------------------------------------------
+
+HOLDER = """
+import sys, time
+from pathlib import Path
+import numpy as np
+from fe_drivetrain.common.cache import Cache
+cache = Cache(Path(sys.argv[1]))
+with cache.one_at_a_time("solutions", {"a": 1}):
+    print("in", flush=True)
+    sys.stdin.readline()
+    cache.keep("solutions", {"a": 1}, {"x": np.arange(3)})
+"""
+
+
+def test_who_waits_for_another_process_finds_what_that_has_kept(tmp_path: Path) -> None:
+    cache = Cache(tmp_path / "cache")
+    entered = threading.Event()
+    found: list[Any] = []
+
+    def second() -> None:
+        with cache.one_at_a_time("solutions", {"a": 1}):
+            entered.set()
+            found.append(cache.load("solutions", {"a": 1}))
+
+    with subprocess.Popen(
+        [sys.executable, "-c", HOLDER, str(tmp_path / "cache")],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as first:
+        assert first.stdin is not None
+        assert first.stdout is not None
+        assert first.stdout.readline() == "in\n"
+        with cache.one_at_a_time("solutions", {"a": 2}):
+            pass  # of other content nobody waits
+        waiting = threading.Thread(target=second)
+        waiting.start()
+        assert not entered.wait(0.5)
+        first.stdin.write("\n")
+        first.stdin.flush()
+        waiting.join(60)
+    (kept,) = found
+    np.testing.assert_array_equal(kept["x"], np.arange(3))
+    assert [path.suffix for path in (tmp_path / "cache/solutions").iterdir()] == [".arrays"]
+
+
+def test_a_process_that_dies_lets_go_and_its_lock_is_removed(tmp_path: Path) -> None:
+    cache = Cache(tmp_path / "cache")
+    with subprocess.Popen(
+        [sys.executable, "-c", HOLDER, str(tmp_path / "cache")],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as first:
+        assert first.stdout is not None
+        assert first.stdout.readline() == "in\n"
+        first.kill()
+    left = list((tmp_path / "cache/solutions").iterdir())
+    assert [path.suffix for path in left] == [".lock"]
+    cache.keep("solutions", {"a": 2}, {"x": np.arange(3)})
+    assert not left[0].exists()
+    with cache.one_at_a_time("solutions", {"a": 1}):
+        assert cache.load("solutions", {"a": 1}) is None
+
+
+def test_without_a_cache_nobody_waits() -> None:
+    with Cache(None).one_at_a_time("solutions", {}), Cache(None).one_at_a_time("solutions", {}):
+        pass
 
 
 # --- arrays on disk ------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ import pytest
 from test_docs_pages import BLOCK, DOCS, PAGES
 from test_report import results
 
-from fe_drivetrain.command_line.report import TITLES
+from fe_drivetrain.command_line.dossier import TITLES
 from fe_drivetrain.drivetrain_file import library_names
 from fe_drivetrain.report import Results
 from fe_drivetrain.report.answer import Answer

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+import threading
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,6 +34,9 @@ PLANNED = Problem("waits for its turn", "planned")
 """Of a case whose turn comes."""
 RUNNING = Problem("at work", "running")
 """Of a case whose turn it is."""
+
+_ONE_BY_ONE = threading.Lock()
+"""Of threads that write into one folder of reports."""
 
 
 def problem_of(error: InputError) -> Problem:
@@ -70,6 +74,7 @@ def run_case(
     settings: Mapping[str, Any] | None = None,
     quick: bool = False,
     report: Progress = silent,
+    into: Callable[..., Results] | None = None,
 ) -> Results:
     """Run a case and write its result folder: results.json, report.html and what else it makes.
 
@@ -91,6 +96,8 @@ def run_case(
         As in `Run`.
     report : callable
         As in `Run`.
+    into : callable, optional
+        Runs it into a folder in place of `run_into`, in another process, say.
 
     Raises
     ------
@@ -104,18 +111,20 @@ def run_case(
     check_result_folder(out)
     replacing((out / "results.json").is_file())
     shared = shared_folder(out, case)
-    if shared is not None and not claim_reports(shared):
-        shared = None  # of somebody else: no page of ours goes there
-    folder = new_folder(out)
+    with _ONE_BY_ONE:
+        if shared is not None and not claim_reports(shared):
+            shared = None  # of somebody else: no page of ours goes there
+        folder = new_folder(out)
     try:
         if shared is None:
             carry_history(out, folder.path)
         check_history(shared or folder.path)
         with removed_in_one_sentence(folder.path), _listed(case, shared):
-            results = run_into(case, folder.path, taken, quick, report, shared)
-            # before others see the folder, and may put another in its place
-            record_run(shared or folder.path, results)
-            put_in_place(folder, out)
+            results = (into or run_into)(case, folder.path, taken, quick, report, shared)
+            with _ONE_BY_ONE:
+                # before others see the folder, and may put another in its place
+                record_run(shared or folder.path, results)
+                put_in_place(folder, out)
     finally:
         folder.discard()
     return results
@@ -130,6 +139,10 @@ def _listed(case: Case, shared: Path | None) -> Iterator[None]:
     from fe_drivetrain.report.index import problems_before, write_index
 
     def write(own: Mapping[str, Problem]) -> None:
+        with _ONE_BY_ONE:
+            list_with(own)
+
+    def list_with(own: Mapping[str, Problem]) -> None:
         others = {name: why for name, why in problems_before(shared).items() if name != case.name}
         write_index(shared, {**others, **own}, known)
 

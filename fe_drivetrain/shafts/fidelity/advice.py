@@ -71,6 +71,8 @@ class Advice:
         Size of a reaction over that of the largest of its kind (force or moment); 1 of a stiffness.
     sizes : MeshSizes or None
         Element sizes of the assembly.
+    kept : float
+        Wall time of what was solved before: it is among the times of the levels [s].
     """
 
     quantity: Quantity
@@ -80,6 +82,7 @@ class Advice:
     springs: Mapping[str, Floats] = field(default_factory=dict)
     share: float = 1.0
     sizes: MeshSizes | None = None
+    kept: float = 0.0
 
     __repr__ = short_repr
 

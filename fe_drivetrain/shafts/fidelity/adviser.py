@@ -18,9 +18,12 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.kept_time import kept_seconds, working_time
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.fidelity.advice import Advice, LevelResult, relative_difference
-from fe_drivetrain.shafts.fidelity.assembly_bands import AssemblyBand
+from fe_drivetrain.shafts.fidelity.assembly_bands import (
+    AssemblyBand,
+)
 from fe_drivetrain.shafts.fidelity.assembly_series import banded_assembly
 from fe_drivetrain.shafts.fidelity.bearing_units import UnitSolid
 from fe_drivetrain.shafts.fidelity.change_bands import OnSprings
@@ -46,6 +49,7 @@ def advise(
     to_the_top: bool = False,
     report: Callable[[str], object] = lambda step: None,
     shafts: Sequence[int] | None = None,
+    cache: Cache = UNCACHED,
 ) -> Advice:
     """Run levels of rising cost until the quantity is known to be within the tolerance.
 
@@ -63,6 +67,8 @@ def advise(
         Called with what is being done.
     shafts : Sequence[int] or None
         Levels of shafts on springs; where not given 1 and 2, and to the top 3, too.
+    cache : Cache
+        Where solutions may come from, with the times that they took: nowhere if not given.
 
     Raises
     ------
@@ -77,19 +83,19 @@ def advise(
         )
     length = scene.shaft.length
     results: list[LevelResult] = []
-    start = time.perf_counter()
+    start, before = working_time(), kept_seconds()
 
     def add(
         model: LevelModel, seconds: float, estimate: float, band: AssemblyBand | None = None
     ) -> bool:
-        waited = time.perf_counter() - start
+        waited = working_time() - start
         values = quantity.of(model, length)
         results.append(LevelResult(model, values, seconds, estimate, waited, band=band))
         return estimate <= tolerance and not to_the_top
 
     report("level 0: statics")
     model = statics_level(scene)
-    decided = bool(np.isfinite(quantity.of(model, length)).all())
+    decided = _is_known(model, quantity, length)
     done = add(model, model.cost.seconds, 0.0 if decided else float("nan"))
     if not done and scene.bearing_units:
         report("level 1: beam, rigid housings")
@@ -98,12 +104,29 @@ def advise(
     springs: Mapping[str, Floats] = {}
     levels = ((1, 2, 3) if to_the_top else (1, 2)) if shafts is None else shafts
     if not done:
-        springs, done = _run_on_springs(scene, quantity, levels, add, report)
+        springs, done = _run_on_springs(scene, quantity, levels, add, report, cache)
     if not done:
-        # its time is a result, so it is solved
-        model, seconds, (band,) = banded_assembly(scene, [quantity], report, UNCACHED)
+        model, seconds, (band,) = banded_assembly(scene, [quantity], report, cache)
         add(model, seconds, band.half_width, band)
-    return _judged(quantity, tolerance, results, springs, scene)
+    found = _judged(quantity, tolerance, results, springs, scene)
+    return replace(found, kept=kept_seconds() - before)
+
+
+def is_decided_by_statics(scene: Scene, quantity: Quantity) -> bool:
+    """Whether equilibrium alone gives a quantity, so that no other level is run for it.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    quantity : Quantity
+        What is asked for.
+    """
+    return _is_known(statics_level(scene), quantity, scene.shaft.length)
+
+
+def _is_known(model: LevelModel, quantity: Quantity, length: float) -> bool:
+    return bool(np.isfinite(quantity.of(model, length)).all())
 
 
 def _run_on_springs(
@@ -112,6 +135,7 @@ def _run_on_springs(
     levels: Sequence[int],
     add: Callable[[LevelModel, float, float], bool],
     report: Callable[[str], object],
+    cache: Cache,
 ) -> tuple[Mapping[str, Floats], bool]:
     """Shafts on housings that were solved apart, between two bounds of these.
 
@@ -121,9 +145,9 @@ def _run_on_springs(
     length = scene.shaft.length
     report("housings, faces in shape")
     solids: dict[tuple[str, bool], UnitSolid] = {}
-    stiff, seconds = housing_springs(scene, coupling="rigid", cache=UNCACHED, solids=solids)
+    stiff, seconds = housing_springs(scene, coupling="rigid", cache=cache, solids=solids)
     report("housings, faces on average")
-    soft = housing_springs(scene, coupling="averaged", cache=UNCACHED, solids=solids)[0]
+    soft = housing_springs(scene, coupling="averaged", cache=cache, solids=solids)[0]
     previous = None
     on_springs = ", housings as springs" if scene.bearing_units else ""
     for level in levels:
@@ -135,7 +159,7 @@ def _run_on_springs(
         if level == 3 and any(unit.ring_on_housing for unit in scene.bearing_units):
             report("housings under rings that belong to the solid shaft")
             (hard, seconds), (yielding, _) = (
-                housing_springs(scene, c, level, UNCACHED, solids) for c in ("rigid", "averaged")
+                housing_springs(scene, c, level, cache, solids) for c in ("rigid", "averaged")
             )
             bounds = hard, yielding
         model = shaft_level(scene, level, bounds[0], body)

@@ -1,9 +1,9 @@
-"""The assembly of solids on its mesh and on coarser ones, which give its values their bands."""
+"""An assembly of solids on its mesh and on two coarser ones, which give its values their bands."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.kept_time import working_time
 from fe_drivetrain.common.progress import silent
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.elasticity.mesh.measures import mean_size
@@ -23,8 +24,10 @@ from fe_drivetrain.shafts.fidelity.assembly_bands import (
 from fe_drivetrain.shafts.fidelity.change_bands import OnMeshes
 from fe_drivetrain.shafts.fidelity.ladder import LevelModel, solved_assembly
 from fe_drivetrain.shafts.fidelity.quantity import Quantity
-from fe_drivetrain.shafts.response.model import Model
+from fe_drivetrain.shafts.response.cached import is_kept
+from fe_drivetrain.shafts.response.model import Model, mesh_scene
 from fe_drivetrain.shafts.response.neighbours import EVERYTHING, Neighbours, Reuse
+from fe_drivetrain.shafts.response.solved_arrays import kept_arrays
 from fe_drivetrain.shafts.response.unit_loads import Response
 
 
@@ -43,7 +46,7 @@ def banded_assembly(
     LevelModel
         The assembly on the finest mesh.
     float
-        Wall time of that alone [s]; of reading it, where it was kept.
+        Wall time of that alone [s]; where it was kept, that of its solution then.
     list[AssemblyBand]
         Band of each quantity.
     """
@@ -78,7 +81,7 @@ def assembly_series(
     LevelModel
         The assembly on the finest mesh.
     float
-        Wall time of that alone [s]; of reading it, where it was kept.
+        Wall time of that alone [s]; where it was kept, that of its solution then.
     list[OnMeshes]
         Each quantity on all meshes.
     """
@@ -96,14 +99,17 @@ def assembly_series(
         levels.append(level)
         factors.append(factor)
     report(f"level 4: assembly of solids ({len(COARSER) + 1} of {len(COARSER) + 1})")
-    start = time.perf_counter()
+    start = working_time()
     level, model, response = solved_assembly(scene, cache, near[-1])
-    seconds = time.perf_counter() - start
+    seconds = working_time() - start
     sizes.append(mean_size(model.mesh))
     levels.append(level)
     factors.append(1.0)
     report("level 4: errors estimated from recovered stresses")
-    errors = recovered_errors(quantities, model, response, length)
+    if neighbours is None:
+        errors = kept_errors(quantities, model, response, length, cache)
+    else:  # whose mesh may be a moved one
+        errors = recovered_errors(quantities, model, response, length)
     series = [
         OnMeshes(
             tuple(sizes),
@@ -114,6 +120,25 @@ def assembly_series(
         for quantity, error in zip(quantities, errors, strict=True)
     ]
     return level, seconds, series
+
+
+def solve_coarser(scene: Scene, factor: float) -> None:
+    """Solve an assembly on a coarser mesh, for who takes it from the cache later.
+
+    Nothing is done where it is kept already, or nothing can be, nor of a mesh too coarse for a
+    wall.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    factor : float
+        On its mesh sizes, as of `COARSER`.
+    """
+    coarser = scene.model_copy(update={"mesh": scene.mesh.scaled(factor)})
+    with suppress(InputError):
+        if not is_kept(coarser, mesh_scene(coarser)):
+            solved_assembly(coarser)
 
 
 def mesh_neighbours(reuse: Reuse = EVERYTHING) -> tuple[Neighbours, ...]:
@@ -167,3 +192,48 @@ def recovered_errors(
             each = reaction_error(model, response, owner, rows, columns)
             found |= zip(numbers, each, strict=True)
     return [found[k] for k in range(len(quantities))]
+
+
+def kept_errors(
+    quantities: Sequence[Quantity],
+    model: Model,
+    response: Response,
+    length: float,
+    cache: Cache | None = None,
+) -> list[Floats]:
+    """`recovered_errors` of an assembly on the mesh of its scene, from the cache where they are.
+
+    Parameters
+    ----------
+    quantities : Sequence[Quantity]
+        What is asked for.
+    model, response : Model, Response
+        The solved assembly.
+    length : float
+        Length of the shaft [m].
+    cache : Cache or None
+        Where they may come from; the user's if not given.
+
+    Returns
+    -------
+    list[Floats]
+        (k,) of each quantity.
+    """
+    n = len(model.loads)
+    hub = [q.name.partition(".")[0] == "hub" for q in quantities]
+    content = {
+        "recovered errors": [
+            [q.name, [] if of_hub else q.columns(length, n).tolist()]
+            for q, of_hub in zip(quantities, hub, strict=True)
+        ],
+        "length": length,
+    }
+    own = {"assembly_series.py", "assembly_bands.py", "quantity.py"}
+    rooms = {"fe_drivetrain.shafts.fidelity": own}
+
+    def solve() -> dict[str, Floats]:
+        errors = recovered_errors(quantities, model, response, length)
+        return {str(k): error for k, error in enumerate(errors)}
+
+    arrays = kept_arrays(model.scene, content, rooms, solve, cache)
+    return [arrays[str(k)] for k in range(len(quantities))]

@@ -6,7 +6,7 @@ Joint, housing and bedplate are springs in series.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -113,10 +113,10 @@ def unit_stiffness(
 
     known = {} if solids is None else solids
 
-    def solved() -> list[Floats]:
+    def solved() -> Iterator[Floats]:
         if (name, with_ring) not in known:
             known[name, with_ring] = _unit_solid(scene, name, with_ring)
-        return [_solved_unit(known[name, with_ring], coupling, method).stiffness]
+        yield _solved_unit(known[name, with_ring], coupling, method).stiffness
 
     (found,) = _kept(scene, name, [_content(name, with_ring, coupling, method)], cache, solved)
     return found
@@ -148,10 +148,11 @@ def unit_stiffnesses(
 
     ways = [face_of(scene, name, True, coupling) for coupling in _COUPLINGS]
 
-    def solved() -> list[Floats]:
+    def solved() -> Iterator[Floats]:
         unit = _unit_solid(scene, name, ways[0][0])
-        found = {way: _solved_unit(unit, way[1], method).stiffness for way in set(ways)}
-        return [found[way] for way in ways]
+        stiff = _solved_unit(unit, ways[0][1], method).stiffness
+        yield stiff
+        yield stiff if ways[1] == ways[0] else _solved_unit(unit, ways[1][1], method).stiffness
 
     contents = [_content(name, *way, method) for way in ways]
     return dict(zip(_COUPLINGS, _kept(scene, name, contents, cache, solved), strict=True))
@@ -212,10 +213,11 @@ def unit_matrices(
         )
     with_ring, coupling = face_of(scene, name, True, coupling)
 
-    def solved() -> list[Floats]:
+    def solved() -> Iterator[Floats]:
         of = _unit_solid(scene, name, with_ring)
         unit = _solved_unit(of, coupling, method)
-        return [unit.stiffness, _unit_mass(of, unit)]
+        yield unit.stiffness
+        yield _unit_mass(of, unit)
 
     contents = [
         _content(name, with_ring, coupling, method),
@@ -299,11 +301,13 @@ def unit_bounds(
         ways = [(with_ring, c) for (with_ring, _), c in zip(ways, _COUPLINGS, strict=True)]
         band["coupling"] = ways[0][1]
 
-    def solved() -> list[Floats]:
+    def solved() -> Iterator[Floats]:
         unit = _unit_solid(scene, name, ways[0][0])
-        found = {way: _solved_unit(unit, way[1], "auto") for way in set(ways)}
-        stiff, soft = (found[way] for way in ways)
-        return [stiff.stiffness, soft.stiffness, _mesh_band(scene, stiff)]
+        stiff = _solved_unit(unit, ways[0][1], "auto")
+        yield stiff.stiffness
+        soft = stiff if ways[1] == ways[0] else _solved_unit(unit, ways[1][1], "auto")
+        yield soft.stiffness
+        yield _mesh_band(scene, stiff)
 
     contents = [_content(name, *way, "auto") for way in ways]
     stiff, soft, mesh = _kept(scene, name, [*contents, band], cache, solved)
@@ -328,14 +332,14 @@ def _kept(
     name: str,
     contents: Sequence[Mapping[str, Any]],
     cache: Cache | None,
-    solve: Callable[[], Sequence[Floats]],
+    solve: Callable[[], Iterator[Floats]],
 ) -> list[Floats]:
     """What was solved of a scene's bearing unit before, or, where one of it is missing, is now."""
     rooms = {"fe_drivetrain.shafts.fidelity": {"bearing_units.py"}}
     # of the shaft the seat alone, so that other lengths, bores and overhangs find what is kept
     depends = solved_content(scene) | {"shaft": scene.seat_diameter(name)}
     found = kept_together(
-        scene, contents, rooms, lambda: [{"0": a} for a in solve()], cache, depends
+        scene, contents, rooms, lambda: ({"0": a} for a in solve()), cache, depends
     )
     return [arrays["0"] for arrays in found]
 

@@ -19,6 +19,7 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.cache import Cache
 from fe_drivetrain.common.components import FORCES, MOTIONS
 from fe_drivetrain.common.errors import InputError
+from fe_drivetrain.common.kept_time import working_time
 from fe_drivetrain.common.short_repr import short_repr
 from fe_drivetrain.common.spatial import point_motions, wrench_transport
 from fe_drivetrain.drivetrain_file.entrance import AT_HUB, Entrance
@@ -302,6 +303,8 @@ def housing_springs(
 ) -> tuple[dict[str, Floats], float]:
     """Stiffness of every bearing unit, solved apart, and the wall time that took [s].
 
+    Of what is kept that is the time that it took when it was solved.
+
     Of k units that stand on the same parts it is (6, 6 k), see `coupled_units.coupled_stiffness`.
 
     Parameters
@@ -315,7 +318,7 @@ def housing_springs(
     solids : dict or None
         See `bearing_units.unit_stiffness`.
     """
-    start = time.perf_counter()
+    start = working_time()
     found: dict[str, Floats] = {}
     for group in scene.coupled_units:
         found |= coupled_stiffness(scene, group, coupling, ring=level < 3, cache=cache)
@@ -325,7 +328,7 @@ def housing_springs(
             found[name] = unit_stiffness(
                 scene, name, coupling, ring=level < 3, cache=cache, solids=solids
             )
-    return found, time.perf_counter() - start
+    return found, working_time() - start
 
 
 class _Weighed(Mapping[str, Floats]):

@@ -15,8 +15,9 @@ import numpy as np
 
 from fe_drivetrain.common.arrays import Ints
 from fe_drivetrain.elasticity.interfaces.constraints import eliminate, fixed
+from fe_drivetrain.elasticity.operator.incompressible import assemble_materials
 from fe_drivetrain.elasticity.solve.cost_model import predict
-from fe_drivetrain.elasticity.solve.reduction import System, in_blocks, reduce
+from fe_drivetrain.elasticity.solve.reduction import System, reduce
 from fe_drivetrain.shafts.fidelity.ladder import TITLES, shaft_level, statics_level
 from fe_drivetrain.shafts.fidelity.shafts import condensed_shaft
 from fe_drivetrain.shafts.response.model import Model
@@ -155,10 +156,12 @@ def _predicted(level: int, title: str, system: System, n_rhs: int) -> Forecast:
 def _of_parts(model: Model, parts: Sequence[str], held: Ints) -> System:
     """The system of some parts alone, held at some of their nodes."""
     mesh = model.mesh
-    cells = np.concatenate([mesh.cells[mesh.part_cells(part)] for part in parts])
+    of_parts = [mesh.cells[mesh.part_cells(part)] for part in parts]
+    cells = np.concatenate(of_parts)
     nodes, local = np.unique(cells, return_inverse=True)
-    rows = (3 * nodes[:, None] + np.arange(3)).ravel()
-    K = sum(model.part_stiffness[part] for part in parts).tocsr()[rows][:, rows]
-    base = fixed("held", np.searchsorted(nodes, np.intersect1d(held, nodes)), len(rows))
-    elimination = eliminate([base], len(rows))
-    return reduce(mesh.points[nodes], local.reshape(cells.shape), in_blocks(K), elimination)
+    local, points, n = local.reshape(cells.shape), mesh.points[nodes], 3 * len(nodes)
+    owner = np.repeat(np.arange(len(parts)), [len(of) for of in of_parts])
+    materials = [(owner == k, model.scene.material_of(part).lame) for k, part in enumerate(parts)]
+    base = fixed("held", np.searchsorted(nodes, np.intersect1d(held, nodes)), n)
+    K = assemble_materials(points, local, materials, n)
+    return reduce(points, local, K, eliminate([base], n), overwrite=True)

@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_drivetrain.common.cache import Cache, user_cache
+from fe_drivetrain.common.kept_time import count_kept
 from fe_drivetrain.common.provenance import file_digest
 from fe_drivetrain.drivetrain_file.scene import Scene
+from fe_drivetrain.elasticity.mesh.mesh import Mesh
 from fe_drivetrain.elasticity.solve.solvers import Diagnostics
 from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.shafts.response.solution_keys import mesh_hash, solved_by
@@ -50,23 +52,41 @@ def cached_response(
         As `unit_load_response`.
     """
     used = user_cache() if cache is None else cache
-    content = {
-        "scene": solved_content(model.scene),
-        "mesh": mesh_hash(model.mesh),
+    content = _content(model.scene, model.mesh, method, seed)
+    with used.one_at_a_time("solutions", content):
+        arrays = used.load("solutions", content)
+        if arrays is not None:
+            try:
+                kept = _from_arrays(arrays)
+                count_kept(kept.diagnostics.setup_seconds + kept.diagnostics.solve_seconds)
+                return replace(kept, kept=True, entrance=model.scene.entrance)
+            except (KeyError, IndexError, TypeError, ValueError):
+                pass  # not as it was written: solved again below
+        arrays = _to_arrays(unit_load_response(model, method, seed))
+        used.keep("solutions", content, arrays)
+    return replace(_from_arrays(arrays), entrance=model.scene.entrance)
+
+
+def _content(scene: Scene, mesh: Mesh, method: str, seed: int) -> dict[str, Any]:
+    return {
+        "scene": solved_content(scene),
+        "mesh": mesh_hash(mesh),
         "method": method,
         "seed": seed,
         "made by": solved_by(),
     }
-    arrays = used.load("solutions", content)
-    if arrays is not None:
-        try:
-            kept = _from_arrays(arrays)
-            return replace(kept, kept=True, entrance=model.scene.entrance)
-        except (KeyError, IndexError, TypeError, ValueError):
-            pass  # not as it was written: solved again below
-    arrays = _to_arrays(unit_load_response(model, method, seed))
-    used.keep("solutions", content, arrays)
-    return replace(_from_arrays(arrays), entrance=model.scene.entrance)
+
+
+def is_kept(scene: Scene, mesh: Mesh) -> bool:
+    """Whether the user's cache has what `cached_response` would otherwise solve, or can have none.
+
+    Parameters
+    ----------
+    scene, mesh : Scene, Mesh
+        A scene and its mesh.
+    """
+    used = user_cache()
+    return used.folder is None or used.has("solutions", _content(scene, mesh, "auto", 0))
 
 
 def solved_content(scene: Scene) -> dict[str, Any]:
