@@ -52,6 +52,7 @@ TITLES = (
 #: Wall over radius below which a tube gives way noticeably where a load enters.
 _THIN = 0.02
 _ROUND_A_NOSE = "rings of bearings on the nose, and the bedplate that holds it"  # left out
+_OPENING = "contact that opens: joints are linear"
 
 
 @dataclass(frozen=True)
@@ -233,6 +234,7 @@ def shaft_level(
         if on_bedplate or scene.coupled_units:
             neglects.append("what a bedplate gives under the weight of its housing")
         title = f"{TITLES[level]}, housings as springs"
+    neglects.append(_OPENING)
     standing = None if scene.nose is None else on_nose(scene, scene.nose, level, body)
     body = body if standing is None else standing.body
     found = supported(body, scene_supports(scene, housings), scene.coupled_units)
@@ -289,7 +291,7 @@ def level_of_response(scene: Scene, response: Response, seconds: float) -> Level
     names = (*scene.bearing_names, "gearbox")
     reactions = {name: response.reactions[name] for name in names}
     cost = Cost(seconds, response.diagnostics.n_unknowns)
-    neglects = () if scene.nose is None else (_ROUND_A_NOSE,)
+    neglects = (_OPENING,) if scene.nose is None else (_ROUND_A_NOSE, _OPENING)
     motions = response.motions["hub"][:, :6]
     return LevelModel(4, TITLES[4], neglects, cost, reactions, ("hub",), motions, scene.entrance)
 
