@@ -12,7 +12,7 @@ from fe_drivetrain.elasticity.interfaces.constraints import eliminate, fixed
 from fe_drivetrain.elasticity.mesh.blocks import brick
 from fe_drivetrain.elasticity.operator.elasticity import assemble
 from fe_drivetrain.elasticity.solve import multigrid
-from fe_drivetrain.elasticity.solve.aggregates import coarsened
+from fe_drivetrain.elasticity.solve.aggregates import coarsened, of_nodes
 from fe_drivetrain.elasticity.solve.coarse_product import coarse_product
 from fe_drivetrain.elasticity.solve.reduction import diagonal_blocks, in_blocks, reduce
 
@@ -75,7 +75,7 @@ def test_blocks_of_zeros_do_not_connect_aggregates(system):
     assert len(P.indices) < len(every.indices)
     below = coarse_product(system.K, P.tocsr())
     wide = below.tobsr((6, 6)).sorted_indices()
-    indptr, indices, body = multigrid._of_nodes(below, 2)
+    indptr, indices, body = of_nodes(below, 2)
     assert (indptr == wide.indptr).all()
     assert (indices == wide.indices).all()
     assert len(body) == len(coarse) // 6

@@ -8,7 +8,7 @@ and pyamg would estimate again, from random numbers.
 import numpy as np
 from scipy import sparse
 
-from fe_drivetrain.common.arrays import Floats
+from fe_drivetrain.common.arrays import Floats, Ints
 from fe_drivetrain.common.compiled import njit
 from fe_drivetrain.elasticity.operator.kernels import Index, pattern_of
 
@@ -159,3 +159,27 @@ def _smooth(
             columns[end] = columns[q]
             end += not is_zero
         rows[i + 1] = end
+
+
+def of_nodes(K: sparse.bsr_array, blocks: int) -> tuple[Index, Index, Ints]:
+    """Pattern of a matrix whose nodes have some blocks of three each, all of one body."""
+    n = len(K.indptr) // blocks
+    starts, ends = K.indptr[:-1:blocks], K.indptr[1::blocks]
+    counts = (ends - starts) // blocks
+    indptr = np.append(np.int32(0), np.cumsum(counts, dtype=np.int32))
+    entries = np.repeat(starts - blocks * indptr[:-1], counts) + blocks * np.arange(indptr[-1])
+    return indptr, K.indices[entries] // blocks, np.zeros(n, dtype=np.int64)
+
+
+def within_bodies(indptr: Index, indices: Index, body: Ints) -> sparse.csr_matrix:
+    """Connections of nodes, those across a joint left out."""
+    n = len(body)
+    row = np.repeat(np.arange(n), np.diff(indptr))
+    a, b = body[row], body[indices]
+    kept = (a == b) | (a < 0) | (b < 0)
+    entries = (np.ones(int(kept.sum())), (row[kept], indices[kept]))
+    connected = sparse.csr_matrix(entries, shape=(n, n))
+    connected.indices, connected.indptr = (
+        i.astype(np.int32, copy=False) for i in (connected.indices, connected.indptr)
+    )
+    return connected

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg, sparse
 
-from fe_drivetrain.common.arrays import Floats, Ints
+from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import SINGULAR, InputError
 from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.elasticity.operator import kernels
 from fe_drivetrain.elasticity.operator.vectors import LANES
-from fe_drivetrain.elasticity.solve.aggregates import coarsened
+from fe_drivetrain.elasticity.solve.aggregates import coarsened, of_nodes, within_bodies
 from fe_drivetrain.elasticity.solve.coarse_product import coarse_product
 from fe_drivetrain.elasticity.solve.recycled import Start
 from fe_drivetrain.elasticity.solve.reduction import Joints, System, diagonal_blocks, in_blocks
@@ -252,12 +252,12 @@ def _hierarchy(system: System, options: Options) -> Hierarchy:
         K = coarse_product(K, P, levels[-1].restriction)
     elif system.prolongation is not None:
         motions, body = system.prolongation @ motions, np.zeros(K.shape[0] // 3, dtype=np.int64)
-    connected = _within_bodies(*kernels.pattern_of(K), body) if options.apart else None
+    connected = within_bodies(*kernels.pattern_of(K), body) if options.apart else None
     K, width = in_blocks(K), 3
     while K.shape[0] // width > options.coarsest and len(levels) < _MAX_LEVELS:
         # Six degrees of freedom an aggregate below the first level: two blocks of three.
         if connected is None and options.strength == 0.0:
-            connected = _within_bodies(*_of_nodes(K, width // 3))
+            connected = within_bodies(*of_nodes(K, width // 3))
         elif connected is None:
             connected = symmetric_strength_of_connection(K.tobsr((width, width)), options.strength)
         smoothing = _smoothing(K, options)
@@ -334,30 +334,6 @@ def max_eigenvalue(K: Rounded | sparse.bsr_array, inverse: Floats) -> float:
         kernels.redirect(p, z, np.array([beta]))
     values, vectors = linalg.eigh_tridiagonal(diagonal, beside[:-1])
     return float(values[-1] + beside[-1] * abs(vectors[-1, -1]))
-
-
-def _of_nodes(K: sparse.bsr_array, blocks: int) -> tuple[kernels.Index, kernels.Index, Ints]:
-    """Pattern of a matrix whose nodes have some blocks of three each, all of one body."""
-    n = len(K.indptr) // blocks
-    starts, ends = K.indptr[:-1:blocks], K.indptr[1::blocks]
-    counts = (ends - starts) // blocks
-    indptr = np.append(np.int32(0), np.cumsum(counts, dtype=np.int32))
-    entries = np.repeat(starts - blocks * indptr[:-1], counts) + blocks * np.arange(indptr[-1])
-    return indptr, K.indices[entries] // blocks, np.zeros(n, dtype=np.int64)
-
-
-def _within_bodies(indptr: kernels.Index, indices: kernels.Index, body: Ints) -> sparse.csr_matrix:
-    """Connections of nodes, those across a joint left out."""
-    n = len(body)
-    row = np.repeat(np.arange(n), np.diff(indptr))
-    a, b = body[row], body[indices]
-    kept = (a == b) | (a < 0) | (b < 0)
-    entries = (np.ones(int(kept.sum())), (row[kept], indices[kept]))
-    connected = sparse.csr_matrix(entries, shape=(n, n))
-    connected.indices, connected.indptr = (
-        i.astype(np.int32, copy=False) for i in (connected.indices, connected.indptr)
-    )
-    return connected
 
 
 @dataclass(frozen=True)
