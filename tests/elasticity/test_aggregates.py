@@ -107,3 +107,35 @@ def test_the_coarse_product_is_that_of_sparse_matrices(system, rng, plain):
     assert found.has_canonical_format
     again = coarse_product(system.K, P, P.T.tocsr())
     assert (again.data == found.data).all()
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        multigrid.Options(coarsest=10, **changed)
+        for changed in (
+            {},
+            {"apart": False},
+            {"strength": 0.02},
+            {"prolongation_smoother": None},
+            {"prolongation_smoother": "energy"},
+            {"linear_level": False},
+            {"single": False},
+        )
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize(("cuts", "nodes"), [((6, 6, 6), 8), ((4, 4, 4), 10)])
+def test_every_option_solves(options, cuts, nodes):
+    block = brick(cuts, nodes, lambda p: p)
+    K = assemble(block.points, block.cells, (1.0, 1.0))
+    elimination = eliminate([fixed("wall", block.face_nodes("x0"), K.shape[0])], K.shape[0])
+    system = reduce(block.points, block.cells, K, elimination)
+    F = np.zeros((K.shape[0], 1))
+    F[3 * block.face_nodes("x1") + 2] = 1.0
+    hierarchy = multigrid.build(system, options)
+    assert len(hierarchy.levels) >= 2
+    found = multigrid.conjugate_gradients(system.K, F, hierarchy.precondition, 1e-9)
+    left = np.linalg.norm(F - system.K @ found.x) / np.linalg.norm(F)
+    assert found.energy_error < 1e-9
+    assert left < 1e-6

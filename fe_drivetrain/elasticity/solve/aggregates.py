@@ -163,7 +163,7 @@ def _smooth(
 
 def of_nodes(K: sparse.bsr_array, blocks: int) -> tuple[Index, Index, Ints]:
     """Pattern of a matrix whose nodes have some blocks of three each, all of one body."""
-    n = len(K.indptr) // blocks
+    n = (len(K.indptr) - 1) // blocks
     starts, ends = K.indptr[:-1:blocks], K.indptr[1::blocks]
     counts = (ends - starts) // blocks
     indptr = np.append(np.int32(0), np.cumsum(counts, dtype=np.int32))
