@@ -153,7 +153,7 @@ class CompareResult(Result):
 
 def compare(
     designs: Mapping[str, Drivetrain],
-    quantities: Sequence[Quantity] | None = None,
+    quantities: Sequence[Quantity | str] | None = None,
     tolerance: float = 0.05,
     load: Mapping[str, float] | None = None,
     varied: Varied | None = None,
@@ -166,9 +166,9 @@ def compare(
     ----------
     designs : mapping of str to Drivetrain
         By name; the others are compared with the first.
-    quantities : sequence of Quantity or None
-        What is compared; see `fe_drivetrain.shafts.fidelity.compare_designs`. Or what turns, as
-        ``Quantity("modes.torsional.1")``, which is the default without sections of a main shaft.
+    quantities : sequence of Quantity or str, or None
+        What is compared, or its names; see `fe_drivetrain.shafts.fidelity.compare_designs`. Or what
+        turns, as "modes.torsional.1", which is the default without sections of a main shaft.
     tolerance : float
         Allowed error of a change, relative.
     load : mapping of str to float or None
@@ -185,13 +185,14 @@ def compare(
     """
     found, steps = Findings(), Steps(report)
     found.seed = None
+    asked = None if quantities is None else [_quantity(one) for one in quantities]
     with steps.step("designs at their levels"):
-        turning = _turning(designs, quantities, load)
+        turning = _turning(designs, asked, load)
         if turning:
             differences = turning_differences(designs, turning, tolerance, report)
         else:
             whole = {name: with_sections(one, name) for name, one in designs.items()}
-            differences = compare_designs(whole, quantities, tolerance, load, report)
+            differences = compare_designs(whole, asked, tolerance, load, report)
     for name, scene in designs.items():
         found.concerns(scene, name)
     _explain(found, differences, list(designs))
@@ -199,7 +200,7 @@ def compare(
     _answer(found, differences, list(designs), varied)
     found.data("changes", [_change(one) for one in differences])
     options = {
-        "quantities": None if quantities is None else [one.name for one in quantities],
+        "quantities": None if asked is None else [one.name for one in asked],
         "tolerance": tolerance,
         "load": load,
         "varied": None if varied is None else {"key": varied.key, "values": varied.values},
@@ -211,6 +212,10 @@ def compare(
         varied=varied,
         **found.frozen(steps.times, **options),
     )
+
+
+def _quantity(asked: Quantity | str) -> Quantity:
+    return Quantity(asked) if isinstance(asked, str) else asked
 
 
 def _turning(
