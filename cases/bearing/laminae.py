@@ -87,7 +87,7 @@ def answer(page: Page, error: float, crowned: list[Record]) -> None:
     enough = "are enough" if error <= ENOUGH else "are not enough"
     page.answer(
         "How many laminae does a roller need, and what does its profile do?",
-        f"30 laminae {enough}, moments err by at most {percent_text(error)}; the profile lowers "
+        f"30 laminae {enough}, moments within {percent_text(error)}; the profile lowers "
         f"the end's load from {ends[0]:.2f} to {ends[1]:.2f} of the mean, and {rises} pressure.",
         [
             page.judged("error of the moment with 30 laminae", by="for ISO/TS 16281", unit="%"),

@@ -290,7 +290,7 @@ def answer(page: Page, found: Found, level: str, own: bool) -> None:
     face = {m: found.turns[CALM, m].face_load(mesh) for m in (*LINEAR, ROLLERS)}
     page.answer(
         "What does the diagonal of a gearbox bearing's stiffness lose?",
-        f"The diagonal errs by up to {percent(worst)} in a bearing's load on rollers, six by six "
+        f"The diagonal errs by up to {percent(worst)} in bearing loads on rollers, six by six "
         f"{percent(matrix)}; at planets {percent(planet)}: {ends}.",
         [
             page.value("error of loads by the diagonal [%]", 100 * worst),

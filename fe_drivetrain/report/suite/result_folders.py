@@ -35,8 +35,8 @@ PLANNED = Problem("waits for its turn", "planned")
 RUNNING = Problem("at work", "running")
 """Of a case whose turn it is."""
 
-_ONE_BY_ONE = threading.Lock()
-"""Of threads that write into one folder of reports."""
+_ONE_BY_ONE = threading.RLock()
+"""Of threads that write into one folder of reports; a thread that has it may come again."""
 
 
 def problem_of(error: InputError) -> Problem:
