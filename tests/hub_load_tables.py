@@ -59,3 +59,16 @@ def table_cells(form: str = "{:.9g}") -> list[list[str]]:
         [f"{t:g}", *(form.format(v) for v in row)]
         for t, row in zip(TIME, 1e-3 * LOADS, strict=True)
     ]
+
+
+def swinging_loads(path: Path, seconds: float) -> Path:
+    """A .csv of loads that swing once in ten seconds, and the rotor's speed."""
+    time = np.arange(0.0, seconds, 0.5)
+    swing = np.sin(2 * np.pi * time / 10.0)
+    mean = np.array([2e5, 0.0, -3e5, 9e5, 0.0, 0.0])
+    each = mean + np.outer(swing, [5e4, 1e3, 1e4, 0.0, 6e5, 1e5])
+    names = [f"{name} [{'N' if k < 3 else 'N m'}]" for k, name in enumerate(NAMES)]
+    header = ",".join(["time [s]", *names, "RotSpeed [rpm]"])
+    table = np.column_stack([time, each, np.full(len(time), 15.0)])
+    np.savetxt(path, table, delimiter=",", header=header, comments="", fmt="%.9g")
+    return path

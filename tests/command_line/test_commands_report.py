@@ -5,16 +5,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from answer_rules import broken_rules
+from hub_load_tables import swinging_loads
 from tiny_case import Result
 
 from fe_drivetrain.command_line import printing
 from fe_drivetrain.command_line.dossier import content_of
 from fe_drivetrain.command_line.dossier_works import turning_works
 from fe_drivetrain.command_line.report_request import ReportRequest
-from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.drivetrain_file import change_scene, library_scene, read_drivetrain
 from fe_drivetrain.drivetrain_file.without_weight import weightless
 from fe_drivetrain.report.environment import environment
@@ -39,16 +38,7 @@ COARSE = ("mesh.shaft=0.5", "mesh.bearing=0.2", "mesh.housing=0.3", "mesh.elemen
 @pytest.fixture
 def loads(tmp_path: Path) -> Path:
     """A minute of loads that swing, and the rotor's speed."""
-    time = np.arange(0.0, 60.0, 0.5)
-    swing = np.sin(2 * np.pi * time / 10.0)
-    mean = np.array([2e5, 0.0, -3e5, 9e5, 0.0, 0.0])
-    each = mean + np.outer(swing, [5e4, 1e3, 1e4, 0.0, 6e5, 1e5])
-    names = [f"{name} [{'N' if k < 3 else 'N m'}]" for k, name in enumerate(FORCES)]
-    header = ",".join(["time [s]", *names, "RotSpeed [rpm]"])
-    table = np.column_stack([time, each, np.full(len(time), 15.0)])
-    file = tmp_path / "gust.csv"
-    np.savetxt(file, table, delimiter=",", header=header, comments="", fmt="%.9g")
-    return file
+    return swinging_loads(tmp_path / "gust.csv", 60.0)
 
 
 def test_a_dossier_answers_and_is_made_once(

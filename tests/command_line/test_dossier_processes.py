@@ -9,12 +9,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
+from hub_load_tables import swinging_loads
 
 from fe_drivetrain.command_line.dossier import chains_of
 from fe_drivetrain.common.cache import CACHE_VARIABLE
-from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.threads import CORES_VARIABLE
 
 SCENE = "main_bearing_spherical"
@@ -27,16 +26,7 @@ PARTS = {"overview", "loads", "reactions", "life", "model", "check", "export"}
 @pytest.fixture
 def loads(tmp_path: Path) -> Path:
     """Half a minute of loads that swing, and the rotor's speed."""
-    time = np.arange(0.0, 30.0, 0.5)
-    swing = np.sin(2 * np.pi * time / 10.0)
-    mean = np.array([2e5, 0.0, -3e5, 9e5, 0.0, 0.0])
-    each = mean + np.outer(swing, [5e4, 1e3, 1e4, 0.0, 6e5, 1e5])
-    names = [f"{name} [{'N' if k < 3 else 'N m'}]" for k, name in enumerate(FORCES)]
-    header = ",".join(["time [s]", *names, "RotSpeed [rpm]"])
-    table = np.column_stack([time, each, np.full(len(time), 15.0)])
-    file = tmp_path / "gust.csv"
-    np.savetxt(file, table, delimiter=",", header=header, comments="", fmt="%.9g")
-    return file
+    return swinging_loads(tmp_path / "gust.csv", 30.0)
 
 
 def words(loads: Path, out: Path, *changes: str) -> list[str]:

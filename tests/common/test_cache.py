@@ -75,6 +75,19 @@ with cache.one_at_a_time("solutions", {"a": 1}):
 """
 
 
+def holder(folder: Path) -> subprocess.Popen[str]:
+    """A process that is at work on a solution, and keeps it when it is told to."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", HOLDER, str(folder)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "in\n"
+    return process
+
+
 def test_who_waits_for_another_process_finds_what_that_has_kept(tmp_path: Path) -> None:
     cache = Cache(tmp_path / "cache")
     entered = threading.Event()
@@ -85,15 +98,8 @@ def test_who_waits_for_another_process_finds_what_that_has_kept(tmp_path: Path) 
             entered.set()
             found.append(cache.load("solutions", {"a": 1}))
 
-    with subprocess.Popen(
-        [sys.executable, "-c", HOLDER, str(tmp_path / "cache")],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    ) as first:
+    with holder(tmp_path / "cache") as first:
         assert first.stdin is not None
-        assert first.stdout is not None
-        assert first.stdout.readline() == "in\n"
         with cache.one_at_a_time("solutions", {"a": 2}):
             pass  # of other content nobody waits
         waiting = threading.Thread(target=second)
@@ -109,14 +115,7 @@ def test_who_waits_for_another_process_finds_what_that_has_kept(tmp_path: Path) 
 
 def test_a_process_that_dies_lets_go_and_its_lock_is_removed(tmp_path: Path) -> None:
     cache = Cache(tmp_path / "cache")
-    with subprocess.Popen(
-        [sys.executable, "-c", HOLDER, str(tmp_path / "cache")],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    ) as first:
-        assert first.stdout is not None
-        assert first.stdout.readline() == "in\n"
+    with holder(tmp_path / "cache") as first:
         first.kill()
     left = list((tmp_path / "cache/solutions").iterdir())
     assert [path.suffix for path in left] == [".lock"]
