@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from contextlib import suppress
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.provenance import program_hash
 from fe_drivetrain.common.reading import changed
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.drivetrain_file.scene import Scene, with_materials
+from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.response.cached import whole_content
 from fe_drivetrain.shafts.response.solution_keys import solved_by
 from fe_drivetrain.shafts.uncertainty.kept_rows import EVERY
@@ -113,17 +112,11 @@ class DesignTrials:
         """
         base, values = self.asked.drivetrain, self.values_at(at)
         if isinstance(base, Scene):
-            # another mesh of a housing would make a step in what is smooth otherwise
-            return self._built(values).model_copy(update={"mesh": base.mesh})
+            # another mesh of a housing would make a step in what is smooth otherwise: sizes do not
+            # count, and the finest are allowed where any are
+            built = with_values(base, values, (*reversed(FINER), 1.0))
+            return built.model_copy(update={"mesh": base.mesh})
         return changed(base, values, "drivetrain")
-
-    def _built(self, values: Mapping[str, Any]) -> Scene:
-        """A scene as `with_values` makes it, but for its mesh sizes, which are not looked for."""
-        base = cast("Scene", self.asked.drivetrain)
-        finest = base.model_copy(update={"mesh": base.mesh.scaled(FINER[-1])})
-        with suppress(InputError):
-            return changed(with_materials(finest), values, "scene")
-        return with_values(base, values)
 
     def quantities(self, at: Floats) -> dict[str, Floats] | None:
         """Every quantity of the design at a place; None of one that cannot be built.

@@ -187,22 +187,35 @@ def nominal_value(scene: Drivetrain, key: str) -> float:
     return nominal_values(scene, [key])[0]
 
 
-def with_values(scene: Stated, values: Mapping[str, Any]) -> Stated:
+def with_values(
+    scene: Stated, values: Mapping[str, Any], sizes: Sequence[float] = (1.0, *FINER)
+) -> Stated:
     """The scene with other values by dotted key, materials that come with the program included.
 
     Where a thinner wall does not allow the scene's mesh sizes, a half or less of these.
+
+    Parameters
+    ----------
+    scene : Drivetrain
+        The scene, or a drivetrain without sections.
+    values : mapping of str to Any
+        Values by dotted key.
+    sizes : sequence of float
+        Factors on its mesh sizes, those first that are tried first.
+
+    Raises
+    ------
+    InputError
+        The values are not allowed, whatever the sizes.
     """
     if not isinstance(scene, Scene):
         return changed(scene, values, "drivetrain")
     whole = cast("Stated", with_materials(scene))
-    try:
-        return changed(whole, values, "scene")
-    except InputError:
-        for factor in FINER:
-            finer = whole.model_copy(update={"mesh": scene.mesh.scaled(factor)})
-            with suppress(InputError):
-                return changed(finer, values, "scene")
-        raise
+    for factor in sizes:
+        scaled = whole.model_copy(update={"mesh": scene.mesh.scaled(factor)})
+        with suppress(InputError):
+            return changed(scaled, values, "scene")
+    return changed(whole, values, "scene")  # for its words
 
 
 def spreads_of(drivetrain: Drivetrain) -> Mapping[str, Spread]:
