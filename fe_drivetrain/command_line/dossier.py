@@ -178,12 +178,13 @@ def _kept(dossier: Dossier, names: Sequence[str], content: Mapping[str, Any]) ->
     from fe_drivetrain.report.results import read_results
     from fe_drivetrain.report.suite.resuming import finished_cases
 
-    cases = {dossier.case(name, _nothing, content).name: name for name in names}
-    named = [dossier.case(name, _nothing, content) for name in names]
-    kept = [
-        cases[one] for one in finished_cases(named, dossier.folder, content, dossier.asked.quick)
-    ]
-    return {name: read_results(dossier.place(name) / "results.json") for name in kept}
+    cases = [dossier.case(name, _nothing, content) for name in names]
+    kept = finished_cases(cases, dossier.folder, content, dossier.asked.quick)
+    return {
+        name: read_results(dossier.place(name) / "results.json")
+        for name, case in zip(names, cases, strict=True)
+        if case.name in kept
+    }
 
 
 def _nothing(run: Any, page: Any) -> None:

@@ -72,7 +72,6 @@ def dossier_works(
     from fe_drivetrain.studies.scene_check import check
     from fe_drivetrain.studies.scene_study import study
 
-    channels, rpm = asked.channels, asked.rotor_speed
     catalogues = tuple(asked.catalogue or ())
 
     def write_reactions(run: Run, page: Page, result: StudyResult) -> None:
@@ -85,7 +84,7 @@ def dossier_works(
         "loads": Shown(
             lambda run: loads(
                 asked.loads,
-                LoadOptions(skip=asked.skip, channels=channels, rotor_speed_rpm=rpm),
+                LoadOptions(**asked.reading),
                 resume=True,
                 report=run.report,
             ),
@@ -103,9 +102,7 @@ def dossier_works(
                 scene,
                 asked.loads,
                 asked.place,
-                LifeOptions(
-                    skip=asked.skip, catalogues=catalogues, channels=channels, rotor_speed_rpm=rpm
-                ),
+                LifeOptions(catalogues=catalogues, **asked.reading),
                 resume=True,
                 report=run.report,
             ),
@@ -149,9 +146,7 @@ def strength_works(asked: ReportRequest, scene: Scene) -> dict[str, Work]:
 
     if scene.strength is None:
         return {}
-    options = StrengthOptions(
-        skip=asked.skip, channels=asked.channels, rotor_speed_rpm=asked.rotor_speed
-    )
+    options = StrengthOptions(**asked.reading)
     return {
         "strength": Shown(
             lambda run: strength(
@@ -196,9 +191,7 @@ def turning_works(asked: ReportRequest, scene: Scene) -> dict[str, Work]:
     }
     if not scene.gearbox.stages:
         return works
-    options = GearOptions(
-        skip=asked.skip, channels=asked.channels, rotor_speed_rpm=asked.rotor_speed
-    )
+    options = GearOptions(**asked.reading)
     works["gears"] = Shown(
         lambda run: gears(
             scene,

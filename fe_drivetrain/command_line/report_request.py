@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -70,6 +70,15 @@ class ReportRequest:
         from fe_drivetrain.turbine_loads.hub_loads.channel_map import read_channel_map
 
         return None if self.mapping is None else read_channel_map(self.mapping)
+
+    @property
+    def reading(self) -> dict[str, Any]:
+        """How the files are read, as options of studies call it."""
+        return {
+            "skip": self.skip,
+            "channels": self.channels,
+            "rotor_speed_rpm": self.rotor_speed,
+        }
 
     @property
     def place(self) -> Site | None:

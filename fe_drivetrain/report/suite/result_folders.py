@@ -36,7 +36,7 @@ RUNNING = Problem("at work", "running")
 """Of a case whose turn it is."""
 
 _ONE_BY_ONE = threading.RLock()
-"""Of threads that write into one folder of reports; a thread that has it may come again."""
+"""Held by a thread that writes into a folder of reports; the same thread may take it again."""
 
 
 def problem_of(error: InputError) -> Problem:
@@ -140,11 +140,9 @@ def _listed(case: Case, shared: Path | None) -> Iterator[None]:
 
     def write(own: Mapping[str, Problem]) -> None:
         with _ONE_BY_ONE:
-            list_with(own)
-
-    def list_with(own: Mapping[str, Problem]) -> None:
-        others = {name: why for name, why in problems_before(shared).items() if name != case.name}
-        write_index(shared, {**others, **own}, known)
+            before = problems_before(shared).items()
+            others = {name: why for name, why in before if name != case.name}
+            write_index(shared, {**others, **own}, known)
 
     known = list(all_cases())
     write({case.name: RUNNING})
