@@ -204,9 +204,9 @@ def _parts(
     wrench = loading.wrench()
     rows: Rows | None = loading.spectrum
     if rows is None:
-        speed = _with_speed(options, scene).rotor_speed_rpm or 0.0
+        speed = _rated_speed(options, scene) or 0.0
         hours = HOURS if options.hours is None else options.hours
-        rows = [(wrench[3], hours, speed * ONE_RPM)]
+        rows = [(wrench[3], hours, speed)]
     found = []
     for torque, hours, speed in torque_classes(rows, _rated_speed(options, scene)):
         loads = wrench.copy()
