@@ -38,7 +38,7 @@ FLAT = "Error of the bore of an ever shorter section; shaded: below 1 % of the r
 BY, PRICE = "limit from where the ranges end, relative", "error of the price"
 IDLE = "Price of a limit where ranges end just beyond or before it; shaded: below 1 %"
 APART, SHARE = "limits apart, relative", "share of the price that the idle limit takes"
-ALIKE = "Prices of two limits that pull the same way"
+TOGETHER = "Prices of two limits that pull the same way"
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def run(run: Run, page: Page) -> None:
     with run.step("a limit that hardly acts"):
         idle = idle_limit(page, 1.0 if run.quick else 4.0)
     with run.step("two limits nearly equal"):
-        alike = limits_alike(page, 1.0 if run.quick else 4.0)
+        apart = limits_together(page, 1.0 if run.quick else 4.0)
     page.answer(
         "When does the least design of a search mean little?",
         f"Where values weigh less than {formatted(shortest, 1)} of the whole, or limits meet: "
@@ -94,7 +94,7 @@ def run(run: Run, page: Page) -> None:
         [
             page.value("least share of the mass with which a value is found", shortest),
             page.value("distance of a limit from ends of ranges, for its price to count", idle),
-            page.value("distance of two limits, for prices of their own", alike),
+            page.value("distance of two limits, for prices of their own", apart),
         ],
         hero=FLAT,
         cautions=[
@@ -218,7 +218,7 @@ def idle_limit(page: Page, each: float) -> float:
     return max(bad)
 
 
-def limits_alike(page: Page, each: float) -> float:
+def limits_together(page: Page, each: float) -> float:
     """Two limits that any design keeps or breaks together, one tighter by ever less."""
     stiffness = bending_stiffness(LENGTHS, OUTER, np.full(3, 0.2), MODULUS)
     rows: list[Record] = []
@@ -260,7 +260,7 @@ def limits_alike(page: Page, each: float) -> float:
         remedy="leave out the one that follows from the other",
     )
     page.section("Limits nearly equal")
-    page.table(ALIKE, rows)
+    page.table(TOGETHER, rows)
     return max(told)
 
 

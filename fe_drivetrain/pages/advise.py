@@ -132,9 +132,8 @@ _NOTE = (
     "included."
 )
 _KEPT = (
-    "What had been solved before, by another study or for an earlier page, was not solved again: "
-    "of it the times are those that it took then, on this kind of machine with as many threads, "
-    "{}\u00a0s in all."
+    "What another study or an earlier page had solved was not solved again. Its time is the time "
+    "that it took then, on this kind of machine with as many threads: {}\u00a0s in all."
 )
 _EACH_LOAD = (
     "No load was given: the levels are compared by the response of the quantity to each of the six "

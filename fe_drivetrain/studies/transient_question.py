@@ -139,7 +139,7 @@ def require_span(name: str, value: float | None, within: tuple[float, float]) ->
     Parameters
     ----------
     name : str
-        Of the argument.
+        Name of the argument.
     value : float or None
         The time [s]; None is in every range.
     within : tuple of float

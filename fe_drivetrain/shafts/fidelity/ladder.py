@@ -305,7 +305,7 @@ def housing_springs(
 ) -> tuple[dict[str, Floats], float]:
     """Stiffness of every bearing unit, solved apart, and the wall time that took [s].
 
-    Of what is kept that is the time that it took when it was solved.
+    The time of what is kept is the time that it took when it was solved.
 
     Of k units that stand on the same parts it is (6, 6 k), see `coupled_units.coupled_stiffness`.
 

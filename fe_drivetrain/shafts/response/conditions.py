@@ -132,9 +132,9 @@ class Conditions:
         Parameters
         ----------
         name : str
-            Of the reference point.
+            Name of the reference point.
         stiffness : Springs
-            Of its six motions [N/m, N m/rad], or "rigid".
+            Stiffness of its six motions [N/m, N m/rad], or "rigid".
         """
         point, numbers = self.points[name], as_numbers(stiffness)
         rigid = np.flatnonzero(np.isinf(numbers)).tolist()
