@@ -6,21 +6,32 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from statistics import median
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numba import get_num_threads
-from numpy.typing import NDArray
-from scipy import sparse
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.performance.matrix_free_product import matrix_free
 from fe_drivetrain.cases.performance.peer_settings import problems_of, sizes_of
 from fe_drivetrain.cases.performance.peers import BENCHMARKS, Problem, assembled, problems
-from fe_drivetrain.common import Floats, timed_runs
+from fe_drivetrain.cases.performance.phase_bytes import (
+    COARSE,
+    EIGENVALUES,
+    REST,
+    STEPS,
+    accessed_bytes,
+    element_bytes,
+    held_bytes,
+    iteration_bytes,
+    matrix_bytes,
+    reduction_bytes,
+    set_up_bytes,
+)
+from fe_drivetrain.common import timed_runs
 from fe_drivetrain.elasticity.interfaces import eliminate, fixed
-from fe_drivetrain.elasticity.operator import Pattern, kernels, sparsity
-from fe_drivetrain.elasticity.solve import System, multigrid, reduce
+from fe_drivetrain.elasticity.operator import kernels, sparsity
+from fe_drivetrain.elasticity.solve import multigrid, reduce
 from fe_drivetrain.elasticity.solve.coarse_product import coarse_product
 from fe_drivetrain.report import error_bars, trace
 from fe_drivetrain.report.suite import Page, Record, Run, grouped
@@ -38,8 +49,8 @@ SPREAD = "least [s]", "median [s]", "most [s]"
 #: From here on matrices are larger than caches.
 BEYOND_CACHES = 100_000
 
-#: Bytes of a 3x3 block in double and in single precision, each with its column.
-DOUBLE, SINGLE = 9 * 8 + 4, 9 * 4 + 4
+#: Unknowns of a body whose matrices stay in caches: what its phases take is not memory's.
+CACHED, QUICK_CACHED = 27_000, 3_000
 
 #: Goals: iterations over their floor; set-up, and assembly, over iterations.
 GOALS = (
@@ -49,11 +60,6 @@ GOALS = (
 )
 
 PHASES = ("pattern", "elements", "reduction", "set-up", "iterations")
-
-#: Steps of set-up, of which each is timed by itself, and what is left.
-EIGENVALUES, COARSE = "set-up: eigenvalues", "set-up: product for linear elements"
-REST = "set-up: all else"
-STEPS = (EIGENVALUES, COARSE, REST)
 
 #: Digits that two sums of the same products in another order may differ by, relative to the most.
 SAME = 1e-12
@@ -99,11 +105,14 @@ def run(run: Run, page: Page) -> None:
     goals: list[Record] = []
     beside: list[Record] = []
     for name in names:
+        with run.step(f"{name}, in caches"):
+            small = problems.of_size(BENCHMARKS[name](), QUICK_CACHED if run.quick else CACHED)
+            cached = a_value([timed(small) for _ in range(1 + repeats)][1:], small.n_unknowns)
         for size in sizes:
             with run.step(f"{name}, {size:,} unknowns"):
                 problem = problems.of_size(BENCHMARKS[name](), size)
                 found = [timed(problem) for _ in range(1 + repeats)][1:]  # the first compiles
-            rows += rows_of(name, problem, found, rate)
+            rows += rows_of(name, problem, found, rate, cached)
             goals += goals_of(rows[-len(PHASES + STEPS) :])
             with run.step(f"{name}, {size:,} unknowns: products"):
                 beside.append(products(name, problem, repeats))
@@ -113,6 +122,8 @@ def run(run: Run, page: Page) -> None:
     page.table("Goals: ratios of median times, and of the iterations to the floor", goals)
     page.section("Phases")
     page.table("Median times of each phase, what it moves at least, and its floor", rows)
+    for text in limits(rows, goals):
+        page.text(text)
     traces = [
         trace(
             f"{name}, {phase}" if len(names) > 1 else phase,
@@ -128,7 +139,7 @@ def run(run: Run, page: Page) -> None:
     page.section("Without the matrix")
     show_products(page, beside)
     page.section("What is counted")
-    for text in method(found[0]):
+    for text in method(found[0], cached_size=small.n_unknowns):
         page.text(text)
     page.data("bandwidths", rates)
     page.data("phases", rows)
@@ -179,103 +190,6 @@ def timed(problem: Problem) -> Solved:
     return Solved(seconds, moved, accessed_bytes(pattern, system), found.iterations, passes)
 
 
-def held_bytes(*arrays: NDArray[Any]) -> float:
-    """Memory of some arrays."""
-    return float(sum(array.nbytes for array in arrays))
-
-
-def matrix_bytes(*matrices: sparse.sparray) -> float:
-    """Memory of some matrices."""
-    return sum(held_bytes(of.data, of.indices, of.indptr) for of in matrices)
-
-
-def element_bytes(problem: Problem, pattern: Pattern, blocks: Floats) -> float:
-    """Nodes, cells and each element's places are read, and blocks written, once."""
-    return held_bytes(problem.points, problem.cells, pattern.slots, blocks)
-
-
-def reduction_bytes(problem: Problem, system: System) -> float:
-    """Nodes, cells and the pattern are read; the diagonal, and what leads to linear elements, made.
-
-    The blocks of the diagonal are read, too.
-    """
-    assert system.elements is not None
-    transfer = matrix_bytes(system.prolongation) + held_bytes(system.near_nullspace, system.body)
-    mesh = held_bytes(problem.points, problem.cells, system.K.indices)
-    return mesh + 2.0 * held_bytes(system.elements.diagonal) + transfer
-
-
-def accessed_bytes(pattern: Pattern, system: System) -> dict[str, float]:
-    """Bytes of every access of phases whose accesses are indirect.
-
-    The pattern is made in two passes over the pairs of each cell's nodes, which read a node and a
-    marker; elements read and write a block for each pair, and its place; the product for linear
-    elements reads a block, and reads and writes the sum that it belongs to, for half of the parents
-    of each row.
-    """
-    assert system.prolongation is not None
-    pairs = float(pattern.slots.size)
-    parents = np.diff(system.prolongation.indptr)[::3]
-    added = 0.5 * float(np.diff(system.K.indptr) @ parents)
-    return {
-        "pattern": pairs * (2 * 8 + 4),
-        "elements": pairs * (2 * 72 + 4),
-        COARSE: added * 3 * 72,
-    }
-
-
-def level_bytes(level: multigrid.Level) -> float:
-    """One pass over the stiffness of a level."""
-    return float((SINGLE if level.K.data.dtype == np.float32 else DOUBLE) * len(level.K.indices))
-
-
-def set_up_bytes(system: System, hierarchy: multigrid.Hierarchy) -> dict[str, float]:
-    """Bytes of set-up, and of each of its steps.
-
-    The stiffness of each level is read and what smooths written; read as often as Lanczos has
-    steps; and read once more with the prolongation, of which the stiffness of the next level is
-    made. The prolongation is written in both directions.
-    """
-    eigenvalues = multigrid.LANCZOS_STEPS * sum(map(level_bytes, hierarchy.levels))
-    rest, products = 0.0, []
-    for number, level in enumerate(hierarchy.levels):
-        exact = float(DOUBLE * len(level.K.indices))
-        coarser = hierarchy.levels[number + 1 : number + 2]
-        following = [float(DOUBLE * len(of.K.indices)) for of in coarser]
-        last = following or [float(hierarchy.coarsest[0].nbytes)]
-        products.append(exact + matrix_bytes(level.prolongation) + last[0])
-        rest += exact + level_bytes(level) + held_bytes(level.inverse)
-        rest += matrix_bytes(level.prolongation, level.restriction)
-    rest += sum(products[1:])
-    return {
-        "set-up": eigenvalues + products[0] + rest,
-        EIGENVALUES: eigenvalues,
-        COARSE: products[0],
-        REST: rest,
-    }
-
-
-def iteration_bytes(system: System, hierarchy: multigrid.Hierarchy) -> float:
-    """The product of conjugate gradients, and of each level what a cycle reads.
-
-    A smoother of degree d before, which begins at zero, reads the stiffness d - 1 times, the
-    residual once, the smoother behind d times; a correction goes down and up once.
-    """
-    n = system.K.shape[0]
-    total: float = DOUBLE * len(system.K.indices) + 8.0 * n * VECTORS
-    for level in hierarchy.levels:
-        between = float(level.prolongation.nnz + level.restriction.nnz)
-        vectors = 8.0 * level.inverse.shape[0] * 3 * VECTORS_OF_LEVEL
-        total += 2 * level.degree * level_bytes(level) + 12.0 * between + vectors
-    return total
-
-
-#: Vectors that an iteration reads or writes: in the product, in two sums, in two updates.
-VECTORS = 2 + 4 + 6 + 3
-#: And a level in a cycle: first step, residual, restriction, correction, last step with its blocks.
-VECTORS_OF_LEVEL = 3 + 3 + 3 + 1 + 3 + 6 + 2 * 3
-
-
 def bandwidths(n: int, repeats: int) -> list[float]:
     """Bytes a second of a compiled loop over six arrays, each of which is far from any cache."""
     X, R, P, Q = (np.ones((n // 4, 1)) for _ in range(4))
@@ -289,10 +203,26 @@ def bandwidths(n: int, repeats: int) -> list[float]:
     return found
 
 
-def rows_of(name: str, problem: Problem, found: list[Solved], rate: float) -> list[Record]:
+def a_value(found: list[Solved], unknowns: int) -> dict[str, float]:
+    """Least time of each phase for one unknown [s], of iterations for one of them."""
+    return {
+        phase: min(one.seconds[phase] / passes_of(one, phase) for one in found) / unknowns
+        for phase in (*PHASES, *STEPS)
+    }
+
+
+def passes_of(solved: Solved, phase: str) -> int:
+    """How often a phase is done in one solve."""
+    return solved.iterations if phase == "iterations" else 1
+
+
+def rows_of(
+    name: str, problem: Problem, found: list[Solved], rate: float, cached: dict[str, float]
+) -> list[Record]:
     """A row for each phase."""
     rows: list[Record] = []
     for phase in (*PHASES, *STEPS):
+        within = cached[phase] * problem.n_unknowns * passes_of(found[0], phase)
         times = [one.seconds[phase] for one in found]
         floor = found[0].bytes[phase] / rate
         accessed = found[0].accessed.get(phase)
@@ -309,6 +239,8 @@ def rows_of(name: str, problem: Problem, found: list[Solved], rate: float) -> li
                 "over its floor": median(times) / floor,
                 "every access [MB]": accessed / 1e6 if accessed else None,
                 "over every access": median(times) * rate / accessed if accessed else None,
+                "as in caches [s]": within if phase != REST else None,
+                "over that in caches": median(times) / within if phase != REST else None,
             }
         )
     return rows
@@ -335,6 +267,41 @@ def goals_of(rows: list[Record]) -> list[Record]:
         }
         for (what, most), ratio in zip(GOALS, ratios, strict=True)
     ]
+
+
+def limits(rows: list[Record], goals: list[Record]) -> list[str]:
+    """What keeps assembly and set-up of the largest size of each problem from their goals."""
+    texts = []
+    for name, mine in grouped(rows, "problem"):
+        took = {row["phase"]: row for row in mine[-len(PHASES + STEPS) :]}
+        n, iterations = took["set-up"]["unknowns"], took["iterations"]["median [s]"]
+        missed = [
+            row["goal"]
+            for row in goals
+            if (row["problem"], row["unknowns"], row["reached"]) == (name, n, "no")
+        ]
+        if "assembly over iterations" in missed:
+            elements = took["elements"]
+            accessed = elements["median [s]"] / elements["over every access"]
+            texts.append(
+                f"{name}, {n:,} unknowns: assembly misses its goal. Elements take "
+                f"{elements['median [s]']:.2g} s. In a body that stays in caches, as many would "
+                f"take {elements['as in caches [s]']:.2g} s, which is "
+                f"{elements['as in caches [s]'] / iterations:.2g} of all iterations. No layout in "
+                "memory makes this part shorter: it is arithmetic, and adding up in caches. To "
+                f"move the bytes of all accesses takes {accessed:.2g} s."
+            )
+        if "set-up over iterations" in missed:
+            eigenvalues, coarse = took[EIGENVALUES], took[COARSE]
+            texts.append(
+                f"{name}, {n:,} unknowns: set-up misses its goal. Its largest eigenvalues take "
+                f"{eigenvalues['median [s]']:.2g} s, {eigenvalues['over its floor']:.2g} times "
+                f"their floor, as {multigrid.LANCZOS_STEPS} passes over each level bound them "
+                f"safely. The product for linear elements takes {coarse['median [s]']:.2g} s, "
+                f"{coarse['over every access']:.2g} times what its accesses need, and all else "
+                f"{took[REST]['median [s]']:.2g} s."
+            )
+    return texts
 
 
 def products(name: str, problem: Problem, repeats: int) -> Record:
@@ -447,7 +414,7 @@ def answer(page: Page, goals: list[Record], rates: list[float]) -> None:
     )
 
 
-def method(solved: Solved) -> list[str]:
+def method(solved: Solved, cached_size: int) -> list[str]:
     """What is counted, in words."""
     threads = get_num_threads()
     return [
@@ -470,4 +437,7 @@ def method(solved: Solved) -> list[str]:
         "What stays in caches anyway, as the neighbours' displacements in a product, is not "
         "counted. "
         "Small problems fit into caches altogether, and may be faster than their floor.",
+        f"Times as in caches are the least of a body of {cached_size:,} unknowns, times the ratio "
+        "of unknowns: what a phase would take if memory were as fast as caches. Steps of Python "
+        "are in it, which weigh more in a small body.",
     ]
