@@ -319,7 +319,7 @@ def lives_under(
     cautions(found, drivetrain.drivetrain, lives, asked, limit_rows(lives))
     assumptions(found, lives, asked)
     assume_reactions(found, lives, machine)
-    checks(found, lives)
+    checks(found, lives, asked.rings)
     with_events = state_events(found, lives, happened, site)
     state_answer(found, lives, site, len(machine.unrated), with_events)
     for name, table in result_tables(lives, machine).items():

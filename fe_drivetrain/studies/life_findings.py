@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fe_drivetrain.bearing.rolling import TOLERANCE
 from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.limits import centrifugal_load
 from fe_drivetrain.bearing_life.life.lubricants import Lubricant
@@ -28,6 +29,9 @@ from fe_drivetrain.studies.unused import choices_not_used, speed_not_used
 from fe_drivetrain.turbine_loads.histories.sites import Site
 from fe_drivetrain.turbine_loads.hub_loads.recorded import short_name
 from fe_drivetrain.turbine_loads.hub_loads.turbines import different_turbines
+
+BALANCE = 100.0 * TOLERANCE
+"""Part of a load that the sum of rollers' forces may leave: the solver's residual, and rounding."""
 
 PRESSED_OUT = 0.01
 """Centrifugal load over the largest of a rolling element from which on it is spoken of."""
@@ -340,8 +344,8 @@ def _of_entry(found: Findings, life: BearingLife, rules: LifeRules) -> None:
     )
 
 
-def checks(found: Findings, lives: Sequence[BearingLife]) -> None:
-    """Check that the damage of all places is that of the bearing, and that all steps count.
+def checks(found: Findings, lives: Sequence[BearingLife], rings: str) -> None:
+    """Check that rollers hold each load, that their damage adds up, and that all steps count.
 
     Parameters
     ----------
@@ -349,8 +353,11 @@ def checks(found: Findings, lives: Sequence[BearingLife]) -> None:
         Takes the checks.
     lives : sequence of BearingLife
         The bearings.
+    rings : str
+        How rings share loads among the rollers, as `LifeOptions.rings`.
     """
     for life in lives:
+        _balance(found, life, rings)
         for kind, modified in (("L10r", False), ("L10mr", True)):
             parts = sum(life.damage.of_positions(r, modified).sum() for r in range(len(life.rows)))
             whole = float(life.damage.totals[kind])
@@ -369,3 +376,25 @@ def checks(found: Findings, lives: Sequence[BearingLife]) -> None:
             why="steps without equilibrium do no damage, and the life would be too long",
             source="residual of 1e-8 of each step's load",
         )
+
+
+def _balance(found: Findings, life: BearingLife, rings: str) -> None:
+    """Whether the rollers' forces add up to the load on the bearing."""
+    left = life.limits.max_unbalanced
+    if np.isnan(left):
+        return  # balls, whose contacts turn under load
+    if rings == "three-degree" and not life.levels:
+        found.note(
+            f"Bearing {life.name}: rings of three degrees of freedom leave up to "
+            f"{100.0 * left:.2g} % of a step's load without balance, what acts across the plane of "
+            "the radial force and the moment; rigid rings leave none."
+        )
+        return
+    found.vanishes(
+        f"{life.name}: load of a step less the forces of its rollers, largest, over the load",
+        left,
+        within=BALANCE,
+        why="rollers hold the ring: forces and moments add up but for the residual of the solver, "
+        f"{TOLERANCE:g} of the load",
+        source="statics of the ring by virtual work, without the solver's loops",
+    )

@@ -72,6 +72,18 @@ def life_of(results: Results) -> float:
     return float(results.figures["lives"][0]["L10mr [years]"])
 
 
+def test_rollers_are_held_against_the_load_and_what_cheap_rings_leave_is_said(run) -> None:
+    scene, words = "main_bearing_bonded", "leave up to"
+    rigid, _ = run(scene=scene)
+    (check,) = (v for v in rigid.verdicts if "forces of its rollers" in v.quantity)
+    assert check.passed
+    assert 0.0 < check.computed < 1e-7
+    cheap, _ = run("--rings", "three-degree", scene=scene)
+    assert not any("forces of its rollers" in v.quantity for v in cheap.verdicts)
+    assert words in str(cheap)
+    assert words not in str(rigid)
+
+
 def test_a_clearance_that_is_not_stated_is_said_with_what_it_does(run, tmp_path: Path) -> None:
     taken, printed = run()
     row = assumed(taken)["clearance 0"]

@@ -13,6 +13,7 @@ from fe_drivetrain.bearing.geometry import BallRow, Bearing, pitch_ratio
 from fe_drivetrain.bearing_life.life.modified_life import BRANCHES, LAST_KAPPA
 from fe_drivetrain.bearing_life.life.rated import RatedBearing
 from fe_drivetrain.bearing_life.life.reference_life import LINE
+from fe_drivetrain.bearing_life.life.roller_models import unbalanced
 from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.components import ONE_RPM
@@ -49,6 +50,9 @@ class Limits:
         Radial load that has the life of the rollers by their own exponent [N], C / L10r^(1/4), of
         balls C / L10r^(1/3); Hertz pressure of a lamina or a ball [Pa];
         one over the static safety [-]; speed [1/min].
+    max_unbalanced : float
+        Largest part of a load that the sum of its laminae leaves, over the load [-]; see
+        `fe_drivetrain.bearing_life.life.roller_models.unbalanced`.
     """
 
     standing: float = 0.0
@@ -66,6 +70,7 @@ class Limits:
     max_pressure: float = 0.0
     max_use: float = 0.0
     max_speed_rpm: float = 0.0
+    max_unbalanced: float = 0.0
 
     def __add__(self, other: Limits) -> Limits:
         """Times add up, extremes stay."""
@@ -130,6 +135,7 @@ def limits_of(
         max_pressure=float(pressures.max(initial=0.0)),
         max_use=float(use.max(initial=0.0)),
         max_speed_rpm=float(speed.max(initial=0.0)),
+        max_unbalanced=unbalanced(rated.bearing, steps),
     )
 
 

@@ -171,6 +171,45 @@ def balanced(laminae: tuple[Floats, ...], converged: Bools) -> tuple[Floats, ...
     return tuple(np.where(converged[:, None, None], q, 0.0) for q in laminae)
 
 
+def unbalanced(bearing: Bearing, steps: Steps) -> float:
+    """Largest part of a load that the sum of its laminae leaves, over the load.
+
+    The sum is taken along the motions that the bearing resists, of the steps that are in
+    equilibrium.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Bearing with rollers; contacts of balls turn under load, and are not added up here.
+    steps : Steps
+        Its load steps.
+
+    Returns
+    -------
+    part : float
+        Next to zero where the laminae hold the ring; not a number of a bearing with balls.
+    """
+    if any(isinstance(row, BallRow) for row in bearing.rows):
+        return np.nan
+    carried = _ring_loads(bearing, steps.laminae)
+    motions, _ = free_motions(bearing)
+    size = np.linalg.norm(steps.loads @ motions, axis=1)
+    left = np.linalg.norm((carried - steps.loads) @ motions, axis=1)
+    judged = steps.converged & (size > 0.0)
+    return float((left[judged] / size[judged]).max(initial=0.0))
+
+
+def _ring_loads(bearing: Bearing, laminae: tuple[Floats, ...]) -> Floats:
+    """Loads (n, 5) that hold the inner ring against its laminae, by virtual work."""
+    approach, lean = roller_motions(bearing)
+    sliced = with_laminae(bearing)
+    along = [row.places for row in sliced.rows if isinstance(row, RollerRow)]
+    middles = np.hstack([q.sum(axis=2) for q in laminae])
+    tilting = np.hstack([q @ x for q, x in zip(laminae, along, strict=True)])
+    found: Floats = middles @ approach + tilting @ lean
+    return found
+
+
 def _on_races(races: Races, shapes: int | None, loads: Floats) -> LaminaLoads:
     """Laminae of rollers on races that give way."""
     approach, lean = roller_motions(races.bearing)
