@@ -51,7 +51,10 @@ def check_seat(name: str, entry_name: str, entry: Entry, seat: float) -> str | N
         f"{what} of its catalogue entry {entry_name} is {1e3 * hole:.4g} mm, the shaft at its seat "
         f"{1e3 * seat:.4g} mm"
     )
-    fix = f"name another entry with {argument('bearings', {name: 'ENTRY'})}, or correct the shaft"
+    fix = (
+        "name another entry under its catalogue, or with "
+        f"{argument('bearings', {name: 'ENTRY'})} for `life`, or correct the shaft"
+    )
     if seat > most:
         raise InputError(
             f"bearing {name!r}: {both}, which must be at most {1e3 * most:.4g} mm: {fix}"

@@ -41,11 +41,14 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
     from fe_drivetrain.report.suite.result_folders import run_case
     from fe_drivetrain.studies.bearing_lives import DrivetrainBearings, lives_under
     from fe_drivetrain.studies.life_events import check_events
+    from fe_drivetrain.turbine_loads.histories.sites import require_several
     from fe_drivetrain.turbine_loads.hub_loads.recorded import recorded_files
 
     options, place, events = asked.options(context), asked.place, asked.events
     check_events(found, events)
     files = recorded_files(asked.loads)
+    if place is not None:
+        require_several(len(files))
     series = SeriesFiles(files)
     from fe_drivetrain.elasticity.compiled_ahead import compiled_ahead
 

@@ -38,9 +38,12 @@ def report_command(context: typer.Context, asked: ReportRequest) -> int:
     scene = named_scene(asked.scene, parse_settings(asked.set_ or ()))
     from fe_drivetrain.command_line.printing import browser
     from fe_drivetrain.studies.study_loads import own_loads
+    from fe_drivetrain.turbine_loads.histories.sites import require_several
 
     needs_browser = browser() if asked.pdf or asked.png else ""
     own = own_loads(asked.loads, asked.skip, scene, asked.channels)
+    if asked.site is not None:
+        require_several(len(own.histories))
     folder = asked.folder.resolve()
     if needs_browser:
         check_result_folder(folder / PRINTED)

@@ -155,7 +155,8 @@ def parse_mapping(text: str, source: str) -> dict[str, Any]:
     try:
         data = deepcopy(_parsed(text))
     except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise InputError(f"{source} is not plain YAML: {' '.join(str(error).split())}") from error
+        said = " ".join(str(error).split()).replace('in "<unicode string>", ', "at ")
+        raise InputError(f"{source} is not plain YAML: {said}") from error
     if not isinstance(data, dict):
         raise InputError(
             f"{source} must be a mapping of keys to values: write lines such as 'KEY: VALUE'"

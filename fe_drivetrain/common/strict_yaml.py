@@ -64,6 +64,15 @@ def digits_as_text(value: Any) -> Any:
     return str(int(value)) if whole and not isinstance(value, bool) else value
 
 
+def _no_word(key: Any, braces: bool) -> str:
+    """The sentence about a key that is no word: in braces it is what a decimal comma makes."""
+    line = key.start_mark.line + 1
+    fix = "put it in quotes"
+    if braces and key.value.isdecimal():
+        fix += f", or write a decimal point if it stands behind a comma, as in 0.{key.value}"
+    return f"line {line}: key {shown(key.value)} must be a word: {fix}"
+
+
 class PlainLoader(yaml.SafeLoader):
     """For ``yaml.load``; raises yaml.YAMLError, or ValueError for an integer beyond reason."""
 
@@ -92,7 +101,7 @@ class PlainLoader(yaml.SafeLoader):
         seen: set[str] = set()
         for key, _ in node.value:
             if key.tag != "tag:yaml.org,2002:str":
-                raise yaml.YAMLError(f"key {shown(key.value)} must be a word: put it in quotes")
+                raise yaml.YAMLError(_no_word(key, bool(node.flow_style)))
             if key.value in seen:
                 raise yaml.YAMLError(f"key {shown(key.value)} stands twice in one mapping")
             seen.add(key.value)

@@ -53,7 +53,7 @@ from fe_drivetrain.studies.life_sums import BearingLife, BearingSums
 from fe_drivetrain.studies.life_tables import limit_rows, long_tables, result_tables
 from fe_drivetrain.studies.result import Result
 from fe_drivetrain.studies.rolling_bearings import OneBearing, bearings_of
-from fe_drivetrain.turbine_loads.histories.sites import Site
+from fe_drivetrain.turbine_loads.histories.sites import Site, require_several
 from fe_drivetrain.turbine_loads.hub_loads.recorded import Files, recorded_files, short_name
 
 _SEEN = 4  # bearings of which a chart shows lives of all kinds at one view
@@ -185,6 +185,8 @@ def life(
     """
     asked = LifeOptions() if options is None else options
     paths = recorded_files(files)
+    if site is not None:
+        require_several(len(paths))
     report("bearings")
     return lives_under(
         DrivetrainBearings(drivetrain, asked),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -9,9 +10,9 @@ from typing import Any, ClassVar
 from fe_drivetrain.common.steps import Steps
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.report.answer import KeyFigure
-from fe_drivetrain.report.charts import bars, trace
+from fe_drivetrain.report.charts import bars, mark_events, trace
 from fe_drivetrain.report.charts import chart as line_chart
-from fe_drivetrain.report.number_text import certain_value, value_text
+from fe_drivetrain.report.number_text import certain_value, value_text, value_with_band
 from fe_drivetrain.report.results import Chart, Figure, Results, cautions_of
 from fe_drivetrain.report.suite.case import QUICK
 from fe_drivetrain.report.suite.findings import Findings
@@ -192,6 +193,9 @@ def _answer(found: Findings, rows: Sequence[Record], parts: Mapping[str, Results
         elif life.status == "bad":
             lives = f"{shortest['bearing']} lives {certain_value(life)}"
             said += f"; {lives}, less than {DESIGN_LIFE:g}"
+        elif life.status == "watch":
+            lives = f"{shortest['bearing']} lives {value_with_band(life)}"
+            said += f"; {lives}, not surely {DESIGN_LIFE:g}"
         elif len(lived) == 1:
             said += f"; {shortest['bearing']} lives {certain_value(life)}"
         else:
@@ -207,13 +211,18 @@ def _answer(found: Findings, rows: Sequence[Record], parts: Mapping[str, Results
         f"{said}.",
         figures[:6],
         hero=SKETCH,
-        cautions=[
-            f"{name}: {sentence}"
-            for name in sorted(parts, key=_SEVERE_FIRST.index)
-            for sentence in cautions_of(parts[name])
-            if sentence != QUICK and sentence not in parts[name].unsettled
-        ],
+        cautions=_cautions(parts),
     )
+
+
+def _cautions(parts: Mapping[str, Results]) -> list[str]:
+    """Cautions of all parts, those that several of them say once, with the names of these."""
+    of: dict[str, list[str]] = {}
+    for name in sorted(parts, key=_SEVERE_FIRST.index):
+        for sentence in cautions_of(parts[name]):
+            if sentence != QUICK and sentence not in parts[name].unsettled:
+                of.setdefault(sentence, []).append(name)
+    return [f"{', '.join(names)}: {sentence}" for sentence, names in of.items()]
 
 
 SKETCH = "The drivetrain from the side, with what its bearings carry at most"
@@ -235,6 +244,10 @@ def _life_figure(found: Findings, part: Results, row: Mapping[str, Any]) -> KeyF
     name = str(row["bearing"])
     stated = _figure_of(part, f"L10mr of bearing {name}", "years")
     band = None if stated is None else stated.band
+    # the answer's figure has the band of insides that fit a catalogue's page, too
+    answered = part.answer.figures if part.answer is not None else ()
+    wide = [one.band for one in answered if one.name == f"L10mr of bearing {name}" and one.band]
+    band = max(wide, default=band)
     return found.value(
         f"L10mr of {name} [years]",
         float(row["L10mr [years]"]),
@@ -299,7 +312,14 @@ def life_chart(rows: Sequence[Mapping[str, Any]]) -> Chart | None:
     -------
     Chart or None
     """
-    lives = {str(r["bearing"]): r["L10mr [years]"] for r in rows if r.get("L10mr [years]")}
+    lives = {
+        str(row["bearing"]): float(row["L10mr [years]"])
+        for row in rows
+        if 0.0 < float(row.get("L10mr [years]") or 0.0) < math.inf
+    }
     if not lives:
         return None
-    return bars("Life of each bearing, L10mr", {"L10mr": lives}, "life [years]")
+    caption = "Life of each bearing, L10mr"
+    # on an axis from zero, a bearing that hardly carries hides all others, also one that fails
+    found = bars(caption, {"L10mr": lives}, "life [years]", min(lives.values()))
+    return mark_events(found, {f"{DESIGN_LIFE:g} years": DESIGN_LIFE})

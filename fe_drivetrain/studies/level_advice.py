@@ -205,6 +205,8 @@ def _answer(found: Findings, advice: Advice, ranked: list[Effect]) -> None:
     if advice.chosen is None:
         verdict = f"Not known within {share}: the finest model, {model.title}, may err by "
         verdict += f"{size}\u00a0% in {name}."
+    elif known is top and model.level == 0 and error == 0.0:
+        verdict = f"Level\u00a00 ({model.title}) is enough for {name}: no stiffness decides it."
     elif known is top:
         verdict = f"Level\u00a0{model.level} ({model.title}) is needed to have {name} within "
         verdict += f"{share}; it may err by {size}\u00a0%."

@@ -14,6 +14,7 @@ from fe_drivetrain.bearing_life.life.lubricants import Lubricant
 from fe_drivetrain.bearing_life.life.reference_life import RINGS
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
+from fe_drivetrain.drivetrain_file.joint_springs import joint_stiffness
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.procedure.failure_modes import BEARING_RATING, TORQUE_AND_BENDING
 from fe_drivetrain.report.number_text import value_with_band
@@ -187,6 +188,8 @@ def cautions(
         _beyond_limits(found, life, row)
     _beyond_limits_together(found, lives, limits)
     _insides(found, lives)
+    if isinstance(drivetrain, Scene) and (held := _held_though_free(drivetrain, lives)):
+        found.note(held, first=True)
     for life in _spoken_of(lives):
         if sentence := in_words(life.name, life.years["L10mr"], life.assumptions):
             found.note(sentence)
@@ -206,6 +209,25 @@ def cautions(
     for unused in choices_not_used(drivetrain, options.choices, [life.bearing for life in lives]):
         found.note(unused, first=True)
     found.note(UNVERIFIED)
+
+
+def _held_though_free(scene: Scene, lives: Sequence[BearingLife]) -> str | None:
+    """A caution of bearings whose joint is free along x, and whose rollers take thrust here."""
+    free = {unit.bearing.name for unit in scene.bearing_units if joint_stiffness(unit)[0, 0] == 0.0}
+    names = [
+        life.name
+        for life in lives
+        if life.name in free and any(row.angle for row in life.bearing.rated.bearing.rows)
+    ]
+    if not names or len(scene.bearing_units) == 1:
+        return None
+    one = len(names) == 1
+    return (
+        f"Bearing{'' if one else 's'} {', '.join(names)} {'is' if one else 'are'} free along x in "
+        "the file, but held there in lives: the rollers take a share of the thrust, so that the "
+        "bearing that holds the shaft lives too long here. If it slides, give a toroidal or "
+        "cylindrical catalogue entry."
+    )
 
 
 def _spoken_of(lives: Sequence[BearingLife]) -> list[BearingLife]:

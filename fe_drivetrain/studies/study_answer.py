@@ -37,11 +37,12 @@ def state_answer(
     cautions : sequence of str
         What the model warns of.
     """
-    peaks = {
-        name: found.judged(peak_across(name, reactions[name].whole)[0].partition(" [")[0])
+    named = {
+        name: peak_across(name, reactions[name].whole)[0].partition(" [")[0]
         for name in bearings
         if name in reactions
     }
+    peaks = {name: found.judged(quantity) for name, quantity in named.items()}
     first, *others = sorted(peaks, key=lambda name: -abs(peaks[name].value))
     tilting = [one.quantity for one in found.figures if one.quantity.startswith("K_R ")]
     figures = [
@@ -52,9 +53,10 @@ def state_answer(
     if len(figures) < _PEAKS and _GEARBOX in reactions:
         figures.append(found.value(*peak_across(_GEARBOX, reactions[_GEARBOX].whole)))
     who = bearing_in_words(first)
+    component = named[first].split()[1]  # of "peak Fz on front"; both together are larger
     found.answer(
         "What do the bearings carry under these loads, and which model is enough?",
-        f"{who[:1].upper()}{who[1:]} carries up to {_size(peaks[first])} across the shaft; "
+        f"{who[:1].upper()}{who[1:]} carries up to {_size(peaks[first])} in {component}; "
         f"{_level(judgement)}.",
         figures,
         cautions=cautions,

@@ -116,6 +116,23 @@ def test_lives_of_constant_loads_are_those_of_one_step(
     assert "Bearings on their seats" in shown
 
 
+def test_a_bearing_that_slides_in_the_file_but_not_in_lives_is_named(
+    invoke: Callable[..., Result], histories: Path
+) -> None:
+    """Its rollers take thrust, which the locating bearing then lacks."""
+    words = ["life", "two_bearings", "--loads", str(histories / "*.csv")]
+    sliding = [
+        *("--set", "bearing_units.rear.interface=spring"),
+        *("--set", "bearing_units.rear.stiffness=[0, rigid, rigid, 0, 0, 0]"),
+    ]
+    for k, (changes, count) in enumerate([([], 0), (sliding, 1)]):
+        status, printed, error = invoke(*words, *changes, "--out", str(histories.parent / f"{k}"))
+        assert status == 0, printed + error
+        notes = read_results(histories.parent / f"{k}" / "results.json").notes
+        said = "Bearing rear is free along x in the file, but held there in lives"
+        assert sum(note.startswith(said) for note in notes) == count
+
+
 CHOICES_REST = (True, "rollers", "rigid", True)
 RINGS = ("inner", "outer")
 
@@ -247,7 +264,9 @@ def test_a_bearing_that_stands_is_said_to_stand(
         (["--bearing", "main_bearing=nothing"], "in no catalogue"),
         (
             ["--bearing", "main_bearing=planet_nj2232"],
-            "planet_nj2232 is 160 mm, the shaft at its seat 400 mm",
+            "planet_nj2232 is 160 mm, the shaft at its seat 400 mm, which must be at most 168 mm: "
+            "name another entry under its catalogue, or with --bearing main_bearing=ENTRY for "
+            "`life`",
         ),
         (
             ["--bearing", "main_bearing=bearing_s", "--bearing", "main_bearing=bearing_s_o20"],

@@ -16,6 +16,7 @@ from fe_drivetrain.command_line.dossier_works import turning_works
 from fe_drivetrain.command_line.report_request import ReportRequest
 from fe_drivetrain.drivetrain_file import change_scene, library_scene, read_drivetrain
 from fe_drivetrain.drivetrain_file.without_weight import weightless
+from fe_drivetrain.report.answer import Answer, KeyFigure
 from fe_drivetrain.report.environment import environment
 from fe_drivetrain.report.results import Results, read_results
 from fe_drivetrain.report.suite.case import QUICK
@@ -174,3 +175,45 @@ def test_the_shortest_life_is_of_any_bearing_that_of_a_gearbox_too() -> None:
     chart = life_chart(result.tables[LIVES])
     assert chart is not None
     assert "stage 1 pin A" in str(chart.figure)
+
+    # the band that the part's answer has, by insides that fit a page, counts here, too
+    wide = KeyFigure(
+        name="L10mr of bearing stage 1 pin A", value=23.0, unit="years", band=9.0, status="none"
+    )
+    said = Answer(question="q", verdict="v", figures=[wide], status="none", cautions=["Two files."])
+    parts[LIFE] = parts[LIFE].model_copy(update={"answer": said})
+    silent = said.model_copy(update={"figures": [], "cautions": ["Two files.", "Other."]})
+    parts[REACTIONS] = parts[REACTIONS].model_copy(update={"answer": silent})
+    result = dossier(scene, parts)
+    verdict = "stage 1 pin A lives 23.0 ± 9.0\u00a0years, not surely 20."
+    assert result.answer.verdict.endswith(verdict)
+    # what several parts say stands once
+    assert result.answer.cautions == ["life, reactions: Two files.", "reactions: Other."]
+
+
+def test_a_bearing_that_fails_is_seen_beside_one_that_hardly_carries() -> None:
+    chart = life_chart(
+        [{"bearing": name, "L10mr [years]": value} for name, value in (("a", 1.0), ("b", 1.4e5))]
+    )
+    assert chart is not None
+    layout = chart.figure["layout"]
+    assert layout["xaxis"]["type"] == "log"
+    assert [shape["x0"] for shape in layout["shapes"]] == [20.0]
+    assert life_chart([{"bearing": "a", "L10mr [years]": None}]) is None
+    assert life_chart([{"bearing": "a", "L10mr [years]": float("inf")}]) is None
+
+
+@pytest.mark.parametrize("command", ["report", "life"])
+def test_a_site_for_one_file_is_refused_before_any_work(
+    invoke: Callable[..., Result], loads: Path, tmp_path: Path, command: str
+) -> None:
+    out = tmp_path / "boss"
+    words = (command, "two_bearings", "--loads", str(loads), "--site", "IIB", "--out", str(out))
+    status, _, error = invoke(*words)
+    assert status == 2
+    assert error.splitlines()[-1] == (
+        "fe-drivetrain: --site weights winds, and there is one file: give files of two winds or "
+        "more, or leave --site out"
+    )
+    assert "..." not in error
+    assert not out.exists()

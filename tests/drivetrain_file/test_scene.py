@@ -174,7 +174,9 @@ def test_own_material_is_taken():
         ("{" * 30 + "}" * 30, "nested deeper|not plain YAML"),
         ("a: 1\nb: {c: 1, c: 2}", "'c' stands twice"),
         ("just text", "must be a mapping"),
-        ("a: [1, 2", "not plain YAML"),
+        ("a: [1, 2", r"not plain YAML: (?!.*unicode string).* at line 1"),
+        ("a: 1\nb: {d: 0,85, e: 2}", r"line 2: key '85' must be .* decimal point .* 0\.85"),
+        ("a: 1\n3: 2", r"line 2: key '3' must be a word: put it in quotes$"),
         ("", "must be a mapping"),
     ],
 )

@@ -256,6 +256,12 @@ def test_a_link_unfolds_what_it_leads_to_and_draws_it(browser: Any, answering: P
         assert opened.said == []
 
 
+PLACES = """() => Array.from(document.querySelectorAll(".chart")).map(place => [
+  place.getBoundingClientRect().height,
+  place.querySelector(".main-svg").getBoundingClientRect().height,
+])"""
+
+
 def test_paper_has_what_is_folded(browser: Any, answering: Path) -> None:
     with Opened(browser, answering, PAPER, unfolded=False) as opened:
         page = opened.page
@@ -270,6 +276,11 @@ def test_paper_has_what_is_folded(browser: Any, answering: Path) -> None:
         boxes = [page.locator(part).bounding_box() for part in (".keys", "#figure-hero")]
         assert boxes[0]["y"] + boxes[0]["height"] <= boxes[1]["y"]
         assert page.locator("#section-1 .main-svg").count() > 0
+        # a chart fills its place: a taller one would cover what follows it
+        heights = page.evaluate(PLACES)
+        assert len(heights) > 1
+        assert {round(high) for high, _ in heights} != {450}
+        assert [round(drawn) for _, drawn in heights] == [round(high) for high, _ in heights]
         page.evaluate("window.dispatchEvent(new Event('afterprint'))")
         assert page.evaluate(count) == folded
 

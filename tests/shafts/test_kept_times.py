@@ -89,3 +89,11 @@ def test_statics_decides_on_reactions_alone_that_nothing_else_shares() -> None:
     spherical, bonded = coarse_scene("spherical"), coarse_scene("bonded")
     assert is_decided_by_statics(spherical, Quantity("main_bearing.Fz"))
     assert not is_decided_by_statics(bonded, Quantity("main_bearing.My"))
+
+
+def test_a_force_of_statics_is_not_said_to_err_by_nothing() -> None:
+    advice = advise(coarse_scene("spherical"), "main_bearing.Fz", load={"hub.Fz": -3e5})
+    verdict = advice.answer.verdict.replace("\u00a0", " ")
+    assert verdict == (
+        "Level 0 (statics) is enough for Fz on the main bearing: no stiffness decides it."
+    )

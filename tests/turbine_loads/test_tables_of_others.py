@@ -13,10 +13,12 @@ from hub_load_tables import LOADS, NAMES, TIME, table_cells
 from fe_drivetrain.common.errors import InputError, MissingToolError
 from fe_drivetrain.turbine_loads.hub_loads import data_tables
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import ChannelMap
+from fe_drivetrain.turbine_loads.hub_loads.csv_table import read_csv
 from fe_drivetrain.turbine_loads.hub_loads.files import hub_load_files, read_hub_loads
 from fe_drivetrain.turbine_loads.hub_loads.matlab_file import matlab_variables
 from fe_drivetrain.turbine_loads.hub_loads.number_forms import NumberForm
 from fe_drivetrain.turbine_loads.hub_loads.recorded import read_recorded
+from fe_drivetrain.turbine_loads.hub_loads.table_kinds import history_table
 
 UNITS = ["s", *["kN"] * 3, *["kN m"] * 3]
 HEAD = [f"{name} [{unit}]" for name, unit in zip(["time", *NAMES], UNITS, strict=True)]
@@ -148,6 +150,27 @@ def test_what_commas_and_points_mean(cells: list[str], numbers: list[float] | No
             [form(cell) for cell in cells]
     else:
         assert [form(cell) for cell in cells] == numbers
+
+
+def test_a_column_of_three_decimals_has_the_comma_of_its_neighbours(tmp_path: Path) -> None:
+    """Alone it may be of thousands; dates and words beside it say nothing."""
+    file = tmp_path / "a.csv"
+    head = "time [s];day;note;wind speed [m/s];" + ";".join(HEAD[1:])
+    rows = [f"{t},0;1.3.2024;a.b;9,{t}19;0,5;0;-4,25;1;0;0" for t in range(5)]
+    file.write_text("\n".join([head, *rows]) + "\n")
+    found = history_table(file).columns([3], [])
+    np.testing.assert_array_equal(found.values[3], [9.019, 9.119, 9.219, 9.319, 9.419])
+
+
+@pytest.mark.parametrize("measured", [False, True])
+@pytest.mark.parametrize("between", ["|", " : "])
+def test_a_header_of_one_column_names_what_may_stand_between(
+    tmp_path: Path, measured: bool, between: str
+) -> None:
+    file = tmp_path / "a.csv"
+    file.write_text(between.join(HEAD) + "\n" + between.join("1" * len(HEAD)) + "\n")
+    with pytest.raises(InputError, match=r"one column, .*: put commas, semicolons or tabs"):
+        read_csv(file, measured)
 
 
 @pytest.mark.parametrize(

@@ -266,8 +266,9 @@
       if (/^xaxis/.test(key) && axis.type === "log") axis.tickangle ??= 0;
     }
     place.style.height = `${tall}px`;
-    // without this a chart keeps the width of the screen on paper
-    if (paper) Object.assign(layout, { width, autosize: false });
+    // without this a chart keeps the width of the screen on paper, and without a height beside it
+    // is drawn 450 pixels high, over what follows it
+    if (paper) Object.assign(layout, { width, height: tall, autosize: false });
     Plotly.react(place, data, layout, config).then(() => {
       if (!place.thinned) place.on("plotly_afterplot", () => thin(place));
       place.thinned = true;
@@ -275,6 +276,7 @@
       if (ends) layout.annotations = [...(layout.annotations ?? []), ...labelsOfEnds(place, ends)];
       if (!more && !ends) return thin(place);
       place.style.height = `${tall + more}px`;
+      if (paper) layout.height = tall + more;
       return Plotly.react(place, data, structuredClone(layout), config);
     });
   }

@@ -166,6 +166,27 @@ def require_winds(files: Sequence[Path], winds: Sequence[float]) -> None:
         )
 
 
+def require_several(count: int) -> None:
+    """Refuse a site's winds for one file before anything is computed; `require_winds` does later.
+
+    Parameters
+    ----------
+    count : int
+        How many files there are.
+
+    Raises
+    ------
+    InputError
+        There is one.
+    """
+    if count == 1:
+        site = argument("site")
+        raise InputError(
+            f"{site} weights winds, and there is one file: give files of two winds or more, or "
+            f"leave {site} out"
+        )
+
+
 @dataclass(frozen=True)
 class Transient:
     """An event that comes so many times a year, as starts and stops do.

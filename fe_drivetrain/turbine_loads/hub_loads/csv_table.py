@@ -16,6 +16,7 @@ from fe_drivetrain.common.components import FORCES
 from fe_drivetrain.common.csv_cells import comment_line, table_row
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.files import atomic_path
+from fe_drivetrain.common.strict_yaml import shown
 from fe_drivetrain.turbine_loads.hub_loads.channel_map import HIGH_SPEED_TORQUE
 from fe_drivetrain.turbine_loads.hub_loads.channels import (
     FORCE_UNITS,
@@ -275,6 +276,11 @@ def _no_unit(file: Path, title: str, name: str) -> InputError:
 def _require_columns(table: HistoryTable, columns: Collection[str], measured: bool) -> None:
     """Refuse a table without time, or without the components that are needed."""
     file, advice = table.file, table.advice
+    if len(table.titles) == 1:
+        advice += (
+            f"; the header is one column, {shown(table.titles[0])}: put commas, semicolons or "
+            "tabs between columns"
+        )
     torque = {"Mx"} if HIGH_SPEED_TORQUE in columns else set()
     missing = [name for name in _CSV_COLUMNS if name not in torque.union(columns)]
     if measured:

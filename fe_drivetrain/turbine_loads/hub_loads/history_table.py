@@ -215,6 +215,13 @@ class CellTable(HistoryTable):
             for place in wanted:
                 if place < len(cells):
                     form.learn("" if place in times and is_stamp(cells[place]) else cells[place])
+        if form.open:  # one column alone, each with three decimals: its neighbours may know
+            for _, cells in self._samples():
+                for cell in cells:
+                    if not is_stamp(cell):
+                        form.learn_of_other(cell)
+                if not form.open:
+                    break
         columns = {place: array("d") for place in wanted}
         read = {place: TimeColumn(form) if place in times else form for place in wanted}
         rows = array("q")

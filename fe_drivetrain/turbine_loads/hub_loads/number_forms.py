@@ -12,6 +12,7 @@ from fe_drivetrain.turbine_loads.hub_loads.channels import parse_number
 
 _GROUPED = re.compile(r"[1-9]\d{0,2}(?:[.,]\d{3})+")
 _WITH_EXPONENT = re.compile(r"[-+\d.,]+[eE][-+]?\d+")
+_ONE_MARK = re.compile(r"[-+]?\d+[.,]\d+(?:[eE][-+]?\d+)?")
 _SPACES = re.compile("(?<=\\d)['\u2019 \u00a0\u202f](?=\\d{3}(?:\\D|$))")
 
 
@@ -25,6 +26,12 @@ class NumberForm:
     def __init__(self) -> None:
         self._decimals: list[str] = []
         self._thousands: set[str] = set()
+        self._commas = False
+
+    @property
+    def open(self) -> bool:
+        """Whether cells with a comma that were learnt from may all be either of two numbers."""
+        return self._commas and not self._decimals
 
     @property
     def decimal(self) -> str:
@@ -43,6 +50,7 @@ class NumberForm:
             return
         number = _SPACES.sub("", text.strip()).lstrip("+-")
         points, commas = number.count("."), number.count(",")
+        self._commas |= commas > 0
         if points and commas:
             last = "." if number.rfind(".") > number.rfind(",") else ","
             self._decimals.append(last)
@@ -53,6 +61,17 @@ class NumberForm:
         elif _WITH_EXPONENT.fullmatch(number) or not _GROUPED.fullmatch(number):
             self._decimals.append("." if points else ",")
         del self._decimals[1:]
+
+    def learn_of_other(self, text: str) -> None:
+        """Take what a cell of another column says, if that is a number and no date or word.
+
+        Parameters
+        ----------
+        text : str
+            The cell.
+        """
+        if _ONE_MARK.fullmatch(text.strip()):
+            self.learn(text)
 
     def __call__(self, text: str) -> float:
         """The number of a cell.
