@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from fe_drivetrain.bearing.rolling import TOLERANCE
+from fe_drivetrain.bearing_life.coupled.load_paths import LoadPath
 from fe_drivetrain.bearing_life.life.life_rules import LifeRules
 from fe_drivetrain.bearing_life.life.limits import centrifugal_load
 from fe_drivetrain.bearing_life.life.lubricants import Lubricant
 from fe_drivetrain.bearing_life.life.reference_life import RINGS
 from fe_drivetrain.common.arguments import argument
 from fe_drivetrain.drivetrain_file.drivetrain import Drivetrain
-from fe_drivetrain.drivetrain_file.joint_springs import joint_stiffness
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.procedure.failure_modes import BEARING_RATING, TORQUE_AND_BENDING
 from fe_drivetrain.report.number_text import value_with_band
@@ -188,8 +188,6 @@ def cautions(
         _beyond_limits(found, life, row)
     _beyond_limits_together(found, lives, limits)
     _insides(found, lives)
-    if isinstance(drivetrain, Scene) and (held := _held_though_free(drivetrain, lives)):
-        found.note(held, first=True)
     for life in _spoken_of(lives):
         if sentence := in_words(life.name, life.years["L10mr"], life.assumptions):
             found.note(sentence)
@@ -209,25 +207,6 @@ def cautions(
     for unused in choices_not_used(drivetrain, options.choices, [life.bearing for life in lives]):
         found.note(unused, first=True)
     found.note(UNVERIFIED)
-
-
-def _held_though_free(scene: Scene, lives: Sequence[BearingLife]) -> str | None:
-    """A caution of bearings whose joint is free along x, and whose rollers take thrust here."""
-    free = {unit.bearing.name for unit in scene.bearing_units if joint_stiffness(unit)[0, 0] == 0.0}
-    names = [
-        life.name
-        for life in lives
-        if life.name in free and any(row.angle for row in life.bearing.rated.bearing.rows)
-    ]
-    if not names or len(scene.bearing_units) == 1:
-        return None
-    one = len(names) == 1
-    return (
-        f"Bearing{'' if one else 's'} {', '.join(names)} {'is' if one else 'are'} free along x in "
-        "the file, but held there in lives: the rollers take a share of the thrust, so that the "
-        "bearing that holds the shaft lives too long here. If it slides, give a toroidal or "
-        "cylindrical catalogue entry."
-    )
 
 
 def _spoken_of(lives: Sequence[BearingLife]) -> list[BearingLife]:
@@ -317,7 +296,7 @@ def assumptions(found: Findings, lives: Sequence[BearingLife], options: LifeOpti
     if any(life.bearing.turning is None for life in lives):
         found.assume("ring that turns against the load", rules.turning, "", _option("turning"))
     if not all(life.levels for life in lives):
-        _of_support(found, options)
+        _of_support(found, options, _sliding(lives))
     files = len(lives[0].files)
     found.assume("samples", f"one of {options.every}", "", f"{_option('every')}; {files} files")
 
@@ -330,13 +309,22 @@ def _of_lubricant(found: Findings, oil: Lubricant) -> None:
     found.assume("cleanliness", oil.cleanliness, "", _option("cleanliness"))
 
 
-def _of_support(found: Findings, options: LifeOptions) -> None:
+def _sliding(lives: Sequence[BearingLife]) -> tuple[str, ...]:
+    """Bearings whose outer ring slides, of the shaft that is in equilibrium with its rollers."""
+    paths = (life.bearing.path for life in lives)
+    return next((path.body.sliding for path in paths if isinstance(path, LoadPath)), ())
+
+
+def _of_support(found: Findings, options: LifeOptions, sliding: Sequence[str]) -> None:
     """State how shaft and rings are modelled where rollers are in equilibrium with the shaft."""
     words = {
         "rollers": "bearings in equilibrium with the shaft, a beam",
         "pinned": "pinned bearings: no moment on them",
     }.get(str(options.support), f"springs with K_R of {options.support} N m/rad")
     found.assume("shaft", words, "", _option("support"))
+    for name in sliding:
+        words = "free along x in the file: its ring slides there, and holds no axial force"
+        found.assume(f"{name}: housing", words, "", "joint of the bearing unit")
     found.assume(
         "rings", options.rings, "", f"{_option('rings')}; housings are rigid but for 'housing'"
     )

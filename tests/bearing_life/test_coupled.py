@@ -129,6 +129,57 @@ def test_a_linear_preloaded_bearing_is_the_beam_on_its_6x6_support() -> None:
     assert_allclose(found.of("bearing"), reference(K)[:, FIVE], rtol=0, atol=1e-8 * size)
 
 
+def test_a_ring_that_slides_is_its_stiffness_without_that_along_the_axis() -> None:
+    bearing = preloaded(2e9)
+    K = np.zeros((6, 6))
+    K[np.ix_(FIVE, FIVE)] = contact_stiffness(bearing)
+    K -= np.outer(K[:, 0], K[0]) / K[0, 0]
+    body = replace(BODY, sliding=("bearing",))
+    found = coupled_equilibrium(body, {"bearing": bearing}, FACTORS)
+    assert found.converged.all()
+    loads = found.of("bearing")
+    assert_allclose(loads, reference(K)[:, FIVE], rtol=0, atol=1e-8 * np.abs(loads).max())
+    assert np.abs(found.slides).min() > 1e-6
+    assert np.abs(found.imbalance()).max() < 1e-8 * np.abs(HUB).max()
+
+
+def test_rings_that_slide_leave_the_thrust_to_the_bearing_that_locates() -> None:
+    free = {
+        "bearing_units.rear.interface": "spring",
+        "bearing_units.rear.stiffness": [0, "rigid", "rigid", 0, 0, 0],
+    }
+    scene = library_scene("two_bearings")
+    bearings = {
+        "front": catalogue_bearing("bearing_s_o20"),
+        "rear": catalogue_bearing("spherical_230_500"),
+    }
+    held, slid = (
+        coupled_equilibrium(scene_body(one, 1), bearings, FACTORS)
+        for one in (scene, change_scene(scene, free))
+    )
+    assert held.converged.all()
+    assert slid.converged.all()
+    assert not held.slides.any()
+    thrust = HUB[:, 0]
+    assert_allclose(held.of("front")[:, 0] + held.of("rear")[:, 0], thrust, rtol=1e-6)
+    assert np.abs(held.of("rear")[:, 0]).max() > 1e4
+    assert_allclose(slid.of("front")[:, 0], thrust, rtol=1e-6)
+    assert np.abs(slid.of("rear")[:, 0]).max() < 1e-7 * thrust.max()
+    # each ring is in equilibrium under its load alone
+    moved = equilibrium(bearings["rear"], slid.of("rear")).displacements
+    assert_allclose(moved[:, 1:3], slid.deflections[:, 1, 1:3], rtol=1e-5, atol=1e-9)
+
+
+def test_a_ring_without_rollers_that_press_along_the_axis_may_as_well_slide() -> None:
+    bearing = toroidal("toroidal", 20, 0.05, 0.06, 0.5)
+    held, slid = (
+        coupled_equilibrium(body, {"bearing": bearing}, FACTORS)
+        for body in (BODY, replace(BODY, sliding=("bearing",)))
+    )
+    assert held.converged.all()
+    assert_allclose(slid.forces, held.forces, rtol=1e-9, atol=1e-3)
+
+
 def test_a_stiff_linear_bearing_with_one_tilting_stiffness_is_eq_3_18() -> None:
     # arms so short that a bearing rigid along the axes still has a finite K_R
     stiff = 1e14

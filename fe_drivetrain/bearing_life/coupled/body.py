@@ -62,6 +62,8 @@ class LinearBody:
         Points where other loads enter.
     entrance : Entrance
         Point where loads enter the scene.
+    sliding : tuple of str
+        Bearings whose outer ring slides along x in its housing, and holds no axial force.
     """
 
     bearings: tuple[str, ...]
@@ -74,6 +76,7 @@ class LinearBody:
     housings: Floats
     load_points: tuple[str, ...] = ()
     entrance: Entrance = AT_HUB
+    sliding: tuple[str, ...] = ()
 
     __repr__ = short_repr
 

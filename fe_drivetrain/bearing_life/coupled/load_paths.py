@@ -117,7 +117,11 @@ class LoadPath:
             found = coupled_equilibrium(self.body, self.bearings, factors)
             return found.forces[:, place], found.converged
         springs = [
-            tilt_springs(self.bearings[name], self.tilt_stiffness if name == self.name else PINNED)
+            tilt_springs(
+                self.bearings[name],
+                self.tilt_stiffness if name == self.name else PINNED,
+                (0.0 if name in self.body.sliding else np.inf, np.inf, np.inf),
+            )
             for name in self.body.bearings
         ]
         forces = on_springs(self.body, factors, np.stack(springs)).forces[:, place]

@@ -60,6 +60,8 @@ class CoupledEquilibrium:
         Factors (n, 10) of the loads of `response.LOADS`.
     deflections : Floats
         Deflection (n, k, 5) of inner against outer ring of each bearing [m, rad].
+    slides : Floats
+        Way (n, k) that each outer ring has moved along x in its housing [m]; 0 where it is held.
     forces : Floats
         Forces (n, k, 5) on each bearing [N, N m], from its rollers.
     residuals : Floats
@@ -76,6 +78,7 @@ class CoupledEquilibrium:
     bearings: tuple[Bearing, ...]
     factors: Floats
     deflections: Floats
+    slides: Floats
     forces: Floats
     residuals: Floats
     converged: Bools
@@ -101,11 +104,17 @@ class CoupledEquilibrium:
 
     def reactions(self) -> dict[str, Floats]:
         """Reactions (n, 6) of the body on its linear supports, by name [N, N m]."""
-        return self.body.reactions(self.factors, self.forces, self.deflections)
+        return self.body.reactions(self.factors, self.forces, self._in_housings())
 
     def imbalance(self) -> Floats:
         """Sum (n, 6) of loads, supports and bearings about the hub [N, N m]."""
-        return self.body.imbalance(self.factors, self.forces, self.deflections)
+        return self.body.imbalance(self.factors, self.forces, self._in_housings())
+
+    def _in_housings(self) -> Floats:
+        """Deflections (n, k, 5) of inner rings against the housings."""
+        moved = self.deflections.copy()
+        moved[..., 0] += self.slides
+        return moved
 
 
 def coupled_equilibrium(
@@ -153,7 +162,8 @@ def coupled_equilibrium(
     arm = max(bearing.arm for bearing in given)
     scale = np.tile([1.0, 1.0, 1.0, 1.0 / arm, 1.0 / arm], len(given))
     problem = _problem(body, given, scale)
-    F = p @ body.loads.T * scale
+    F = np.zeros((len(p), len(problem.K)))
+    F[:, : len(scale)] = p @ body.loads.T * scale
     _refuse_mechanism(body, problem, F, p, scale)
     n = len(p)
     w, f = np.zeros_like(F), np.zeros_like(F)
@@ -169,14 +179,17 @@ def coupled_equilibrium(
         w[part], f[part] = found.w, found.f
         residuals[part], iterations[part] = found.residuals, found.iterations
         converged[part] = found.converged
-    deflections = (w * scale).reshape(n, -1, 5)
+    deflections = problem.deflections(w).reshape(n, -1, 5)
     _refuse_lifted(body, deflections, converged)
+    slides = np.zeros((n, len(given)))
+    slides[:, [body.bearings.index(name) for name in body.sliding]] = w[:, len(scale) :]
     return CoupledEquilibrium(
         body,
         given,
         p,
         deflections,
-        (f / scale).reshape(n, -1, 5),
+        slides,
+        (f[:, : len(scale)] / scale).reshape(n, -1, 5),
         residuals,
         converged,
         iterations,
@@ -185,7 +198,11 @@ def coupled_equilibrium(
 
 @dataclass(frozen=True, eq=False)
 class _Problem:
-    """Scaled: tilts over the arm. `soft` is the stiffness of all contacts at once."""
+    """Scaled: tilts over the arm. `soft` is the stiffness of all contacts at once.
+
+    Unknowns are the motions of all bearings in their housings, 5 k, and the slides of the m outer
+    rings that nothing holds along x.
+    """
 
     K: Floats
     soft: Floats
@@ -193,16 +210,24 @@ class _Problem:
     left: Floats  # motions that nothing holds
     bearings: tuple[Bearing, ...]
     scale: Floats
+    rings: Floats  # (5 k, 5 k + m): motions of inner against outer rings, scaled
+
+    def deflections(self, w: Floats) -> Floats:
+        """Deflections (n, 5 k) of inner against outer rings [m, rad]."""
+        return np.asarray(w @ self.rings.T * self.scale)
 
     def forces(self, w: Floats) -> tuple[Floats, Floats]:
-        """Forces of the bearings, (n, 5 k), and their tangents (n, 5 k, 5 k)."""
-        n, size = w.shape
-        u = w * self.scale
+        """Forces (n, 5 k + m) of the bearings on each unknown, and their tangents."""
+        n, size = len(w), len(self.scale)
+        u = self.deflections(w)
         f, K = np.empty((n, size)), np.zeros((n, size, size))
         for i, bearing in enumerate(self.bearings):
             at = slice(5 * i, 5 * i + 5)
             f[:, at], K[:, at, at] = forces(bearing, u[:, at])
-        return f * self.scale, K * self.scale[:, None] * self.scale
+        f, K = f * self.scale, K * self.scale[:, None] * self.scale
+        if self.rings.shape[1] > size:
+            f, K = f @ self.rings, self.rings.T @ K @ self.rings
+        return f, K
 
 
 @dataclass(frozen=True, eq=False)
@@ -245,15 +270,19 @@ def contact_stiffness(bearing: Bearing, approach: float = TYPICAL_APPROACH) -> F
 
 
 def _problem(body: LinearBody, bearings: tuple[Bearing, ...], scale: Floats) -> _Problem:
-    K = body.stiffness * scale[:, None] * scale
-    soft = np.zeros_like(K)
+    soft = np.zeros_like(body.stiffness)
     for i, bearing in enumerate(bearings):
         at = slice(5 * i, 5 * i + 5)
         soft[at, at] = contact_stiffness(bearing)
     soft *= scale[:, None] * scale
+    size, along = len(scale), [5 * body.bearings.index(name) for name in body.sliding]
+    rings = np.hstack([np.eye(size), -np.eye(size)[:, along]])
+    K = np.zeros((rings.shape[1], rings.shape[1]))
+    K[:size, :size] = body.stiffness * scale[:, None] * scale
+    soft = rings.T @ soft @ rings
     values, vectors = np.linalg.eigh(K + soft)
     held = values > FREE * values[-1]
-    return _Problem(K, soft, vectors[:, held], vectors[:, ~held], bearings, scale)
+    return _Problem(K, soft, vectors[:, held], vectors[:, ~held], bearings, scale, rings)
 
 
 def _refuse_mechanism(
@@ -264,7 +293,7 @@ def _refuse_mechanism(
     if not bad.any():
         return
     case = int(np.argmax(bad))
-    motion = problem.left @ (problem.left.T @ F[case])
+    motion = (problem.left @ (problem.left.T @ F[case]))[: len(problem.scale)]
     i = int(np.argmax(np.abs(motion)))
     raise InputError(
         f"no bearing and no support resists {MOTIONS[i % 5]} at {body.bearings[i // 5]!r}, and "

@@ -1,4 +1,4 @@
-"""The shaft of a scene at any level, for bearings other than the scene's own joints."""
+"""The shaft of a scene at any level, for rolling bearings in place of the joints of the scene."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import replace
 from fe_drivetrain.bearing_life.coupled.body import LinearBody, in_housings, linear_body
 from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
-from fe_drivetrain.drivetrain_file.joint_springs import as_numbers
+from fe_drivetrain.drivetrain_file.joint_springs import as_numbers, joint_stiffness
 from fe_drivetrain.drivetrain_file.scene import Scene
 from fe_drivetrain.shafts.fidelity.shafts import condensed_shaft
 
@@ -21,7 +21,8 @@ def scene_body(
     Parameters
     ----------
     scene : Scene
-        The scene; the joints of its bearings are not used.
+        The scene. Of the joints of its bearings only one thing is used: a ring whose joint is free
+        along x slides in its housing.
     level : int
         Model of the shaft: 1 beam, 2 meridian, 3 solid. With the housings solved as solids the last
         is the assembly of level 4, but for what the faces at the rollers do to each other's shape.
@@ -48,4 +49,18 @@ def scene_body(
     gearbox = as_numbers(scene.gearbox.stiffness)
     supports = {"gearbox": gearbox} if gearbox.any() else {}
     body = linear_body(condensed_shaft(scene, level), names, supports, list(scene.bands))
-    return replace(in_housings(body, housings or {}), entrance=scene.entrance)
+    return replace(
+        in_housings(body, housings or {}), entrance=scene.entrance, sliding=sliding_rings(scene)
+    )
+
+
+def sliding_rings(scene: Scene) -> tuple[str, ...]:
+    """Bearings of a scene whose joint is free along x: their outer rings slide in the housing.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    """
+    units = scene.bearing_units
+    return tuple(unit.bearing.name for unit in units if not joint_stiffness(unit)[0].any())
