@@ -99,8 +99,9 @@ def faults_of(root: Path) -> list[Fault]:
         A row has other keys than those of `Fault`.
     """
     found = []
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # which takes a tenth of the time
     for path in sorted((root / "tests" / "mutations").glob("*.yaml")):
-        for row in yaml.safe_load(path.read_text(encoding="utf-8")):
+        for row in yaml.load(path.read_text(encoding="utf-8"), loader):
             try:
                 found.append(Fault(**{**row, "tests": tuple(row["tests"].split())}))
             except (KeyError, TypeError) as error:

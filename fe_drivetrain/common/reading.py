@@ -164,7 +164,7 @@ def parse_mapping(text: str, source: str) -> dict[str, Any]:
     return data
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=64)  # as many files as the library has, and more
 def _parsed(text: str) -> Any:
     """Content of plain YAML: commands read one file several times, and parsing is most of it."""
     return yaml.load(text, Loader=PlainLoader)
