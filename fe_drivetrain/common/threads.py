@@ -78,13 +78,16 @@ def thread_limits(threads: int) -> dict[str, str]:
 def hold_threads() -> None:
     """Where the user limits the cores, limit what this process imports from now on to as many.
 
-    Idle threads soon sleep in any case. Those of OpenBLAS would spin for tens of milliseconds after
-    each call, and take the cores from compiled loops. Those of compiled loops would spin as long at
-    the end of each for the last to come, which waits for a core where others work on the machine,
-    too: a study then took three times as long. They spin for about a millisecond, which is longer
-    than from one loop of a solver to the next: where they slept at once, small systems would take a
-    third longer.
+    OpenBLAS gets one thread, unless the user says otherwise: matrices that go to it are small. On a
+    machine with nothing else to do, two threads are no faster; where others work on it, too, they
+    wait for each other in each of thousands of calls, and modes of a drivetrain take three times as
+    long. Where it is given several, they sleep when idle: they would spin for tens of milliseconds
+    after each call, and take the cores from compiled loops. Threads of compiled loops would spin as
+    long at the end of each for the last to come: a study then took three times as long. They spin
+    for about a millisecond, which is longer than from one loop of a solver to the next: where they
+    slept at once, small systems would take a third longer.
     """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "4")  # 2^4 cycles
     os.environ.setdefault(
         "GOMP_SPINCOUNT", "20000"

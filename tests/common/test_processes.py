@@ -63,6 +63,7 @@ def test_idle_threads_of_compiled_loops_sleep_unless_the_user_says_otherwise(
 ) -> None:
     monkeypatch.delenv(CORES_VARIABLE)
     monkeypatch.setenv("OPENBLAS_THREAD_TIMEOUT", "4")
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "1")
     monkeypatch.setenv("GOMP_SPINCOUNT", "")  # so that it is put back
     monkeypatch.delenv("GOMP_SPINCOUNT")
     hold_threads()
@@ -71,6 +72,21 @@ def test_idle_threads_of_compiled_loops_sleep_unless_the_user_says_otherwise(
     monkeypatch.setenv("GOMP_SPINCOUNT", "300000")
     hold_threads()
     assert os.environ["GOMP_SPINCOUNT"] == "300000"
+
+
+def test_small_matrices_get_one_thread_unless_the_user_says_otherwise(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.delenv(CORES_VARIABLE)
+    for name in ("OPENBLAS_THREAD_TIMEOUT", "GOMP_SPINCOUNT"):
+        monkeypatch.setenv(name, "4")
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "")  # so that it is put back
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS")
+    hold_threads()
+    assert os.environ["OPENBLAS_NUM_THREADS"] == "1"
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "8")
+    hold_threads()
+    assert os.environ["OPENBLAS_NUM_THREADS"] == "8"
 
 
 def test_results_come_back_from_other_processes() -> None:
