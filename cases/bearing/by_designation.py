@@ -102,16 +102,19 @@ def answer(page: Page, banded: Sequence[Banded], printed: int, alone: float) -> 
     }
     life = widths[QUANTITIES[0]]
     page.answer(
-        "Does a bearing's catalogue page say enough for its reference life and stiffness?",
-        f"Bands over insides that fit the page hold {held} of {len(banded)} published values; L10r "
-        f"is known to {percent_text(life)} at worst.",
+        "How well does a bearing's catalogue page fix its reference life and stiffness?",
+        f"From its page alone L10r is known within ±{percent_text(life)}, stiffness within "
+        f"±{percent_text(widths[QUANTITIES[1]])}; {held} of {len(banded)} published values lie in "
+        "these bands.",
         [
             page.judged(COVERED, "published values within their bands"),
             page.value("half width of the band of L10r, largest [%]", 100.0 * life),
-            page.value("the same with the standard's profile [%]", 100.0 * alone),
+            page.value("half width, L10r, where the profile is the standard's [%]", 100.0 * alone),
             page.value("half width, stiffness, largest [%]", 100.0 * widths[QUANTITIES[1]]),
             page.value("half width, pressure, largest [%]", 100.0 * widths[QUANTITIES[2]]),
-            page.value("printed raceways within the ensemble", printed, at_least=2 * len(RACEWAYS)),
+            page.value(
+                "printed raceway diameters within the bands", printed, at_least=2 * len(RACEWAYS)
+            ),
         ],
         hero=HERO,
         cautions=[

@@ -113,8 +113,8 @@ def answer(page: Page, depth: float) -> None:
     page.answer(
         "How fast does motion grow when a mesh stiffness varies at twice the natural frequency?",
         f"With {100 * depth:g}\u00a0% of variation motion grows by {more:.0f}\u00a0% in each "
-        f"natural period, {percent_text(apart)} from Floquet's rate; damping of {depth / 4:g} "
-        "stops that.",
+        f"natural period, within {percent_text(apart)} of Floquet's theory; a damping ratio of "
+        f"{depth / 4:g} stops it.",
         [
             page.value(f"growth in a natural period, depth {depth} [%]", more),
             *(

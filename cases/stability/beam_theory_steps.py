@@ -253,8 +253,8 @@ def answer(page: Page, found: Map, filleted: Floats) -> None:
     page.answer(
         "How long must a shaft with a sharp step be for beam theory?",
         f"Bent across a sharp step of {step:g}\u00a0:\u00a01, a beam needs a length of "
-        f"{length(least['bending'])} diameters for 5\u00a0%; lengthened by {more:.3f}, it needs "
-        f"{length(with_more)}.",
+        f"{length(least['bending'])} diameters for 5\u00a0%; with {more:.3f} diameters added at "
+        f"the step, {length(with_more)}.",
         [
             *(
                 page.value(f"least length within 5 %, {name} [d]", value)
@@ -262,7 +262,11 @@ def answer(page: Page, found: Map, filleted: Floats) -> None:
                 if value is not None
             ),
             page.value("extra length that replaces the step, bending [d]", more),
-            page.judged(WITH_EXTRA.format("bending"), "worst error with the extra length, bending"),
+            page.judged(
+                WITH_EXTRA.format("bending"),
+                WITH_EXTRA.format("bending"),
+                "worst error with the extra length, bending, both halves as long as wide",
+            ),
             page.value(f"error in bending with the largest fillet, L = {AT:g} d [%]", filleted[-1]),
         ],
         hero=caption_of_errors(step),

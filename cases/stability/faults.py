@@ -26,7 +26,7 @@ EXPECTED = {
 
 PICTURE = (
     "What a kill leaves in the result folder over its moment: as the program writes, whole old or "
-    "new results; written in place, half of them (its safe range shaded)"
+    "new results; written in place, broken ones (shaded, if anywhere: whole ones)"
 )
 MARKED = 'counted; "old" and "new" are distinguished by a mark in every file'
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")

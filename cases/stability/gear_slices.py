@@ -69,7 +69,7 @@ def answer(page: Page, ends: dict[int, float], jam: float, softest: float) -> No
     """State the misalignments up to which slices have the load, and what ends equilibrium."""
     page.answer(
         "How many slices does the load over a misaligned face width need?",
-        f"Face load factors by {SLICES} slices hold 2\u00a0% up to a misalignment of "
+        f"{SLICES} slices give face load factors within 2\u00a0% up to a misalignment of "
         f"{ends[SLICES]:.0f} mean deflections; with {1e3 * PLAY:.1f}\u00a0mm play both flanks "
         f"touch from {jam:.0f} on.",
         [

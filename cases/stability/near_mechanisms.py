@@ -243,7 +243,7 @@ def answer(page: Page, rows: list[Record]) -> None:
     solved = min(row["ratio"] for row in rows if not row["refused"])
     page.answer(
         "How soft may a spring be that alone holds a motion of a shaft?",
-        "A spring that alone holds a motion leaves four digits down to "
+        "Four digits are right down to a spring of "
         f"{formatted(safe, 2, '')} of the body's stiffness; the program "
         + (
             f"warns from {formatted(WEAK, 2, '')} down."
@@ -260,8 +260,11 @@ def answer(page: Page, rows: list[Record]) -> None:
                 max(column(rows, "remedy")),
             ),
         ],
-        hero=caption_of_errors(JOINTS[0]),
-        cautions=["Digits are lost in the soft motion alone, tenfold for each decade of softness."],
+        hero=caption_of_errors(max(rows, key=lambda row: float(row["least safe"]))["joint"]),
+        cautions=[
+            "Digits are lost in the soft motion alone, one for each tenth of the stiffness; the "
+            "joint that loses them first counts."
+        ],
     )
 
 

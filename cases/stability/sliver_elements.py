@@ -198,12 +198,13 @@ def answer(page: Page, rows: list[Record], inside_out: float) -> None:
     digits, alone = (formatted(last if at is None else at, 1, "") for at in (safe, steps))
     ends = {
         "least flatness with six digits of stiffness": safe,
-        "least flatness that multigrid solves alone": steps,
+        "least flatness that multigrid solves without a fallback": steps,
     }
     page.answer(
         "How flat may the elements of a mesh be?",
-        f"Slivers leave six digits of stiffness down to a flatness of {digits}; multigrid alone "
-        f"holds to {alone}, and the program refuses meshes below {formatted(FLATTEST, 2, '')}.",
+        f"Six digits of stiffness are right down to a flatness of {digits}; multigrid needs a "
+        f"fallback below {alone}, and the program refuses meshes below "
+        f"{formatted(FLATTEST, 2, '')}.",
         [
             *(page.value(name, at) for name, at in ends.items() if at is not None),
             page.value("flatness below which the program refuses a mesh", FLATTEST),

@@ -15,6 +15,7 @@ _NOTHING = 0.1  # share of its band below which a value has no digit
 _MAX_DIGITS = 6  # of a value whose band is told in percent
 _FINE = 1e-5  # share of a value: a smaller band is told in percent
 _PRINTED_DIGITS = 7  # of a number that somebody has given; what was computed has more
+_NEGLIGIBLE = 1e-6  # a difference that is allowed, over the reference: nobody could see it
 _ROUND_OFF = 1e-13  # of one that was converted to another unit
 _MARKS = {"good": "✓", "watch": "!", "bad": "✗"}
 _COMPARED_DIGITS = 6  # at most, of a value without a band beside a reference that has as many
@@ -237,6 +238,8 @@ def limit_text(figure: KeyFigure) -> str:
     low = figure.printed or given_text(figure.limit, figure.unit)
     if figure.bound == "between":
         low = f"{low} to {given_text(figure.upper, figure.unit)}"
+    if figure.bound == "equals" and figure.allowed > _NEGLIGIBLE * abs(figure.limit or 0.0):
+        low = f"{low} ± {formatted(figure.allowed, 2, figure.unit)}"
     words = {"at most": "at most ", "at least": "at least ", "equals": "expected "}
     by = f" ({figure.by})" if figure.by else ""
     return f"{words.get(figure.bound, '')}{with_unit(low, figure.unit)}{by}"
