@@ -119,11 +119,11 @@ def answer(page: Page, ratios: list[float], worst: float, softer: list[float]) -
         f"the thesis's {low:g} to {high:g} and {moved:g} {'are' if reached else 'are not'} reached."
     )
     if not met[1] and softer[-1] >= moved:
-        thesis = f"the thesis's {moved:g} takes a carrier {SOFTER[-1]:g} times as soft."
+        soft = f"a carrier {SOFTER[-1]:g} times as soft"
+        thesis = f"the thesis's {moved:g} is not reached without {soft}."
     page.answer(
         "Do rollers, clearance and a flexible carrier load the upwind planet bearing more?",
-        f"On rollers with 0.1\u00a0mm of clearance upwind over downwind is {ratios[4]:.3f}, at "
-        f"worst {worst:.2f}; {thesis}",
+        f"On rollers upwind over downwind is {ratios[4]:.3f}, at worst {worst:.2f}: {thesis}",
         [
             page.value("upwind over downwind, rigid carrier", ratios[1], beside=low, by="thesis"),
             page.value(
