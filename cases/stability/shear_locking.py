@@ -168,8 +168,8 @@ def answer(page: Page, most: int, tip: Excesses, slenderness: Sequence[int], lef
     page.answer(
         "Which elements may bend a slender bar or shaft?",
         f"Linear hexahedra, {ALONG} along, make a bar of L/D\u00a0=\u00a0{longest:g} too "
-        f"stiff by a factor of {formatted(linear['8 nodes'], 2)}; elements of second order stay "
-        f"within {formatted(held, 2)}\u00a0% at every L/D.",
+        f"stiff {formatted(linear['8 nodes'], 2)}-fold; elements of second order stay within "
+        f"{formatted(held, 2)}\u00a0% at every L/D.",
         figures,
         hero=TIPS.format(most),
         cautions=[
