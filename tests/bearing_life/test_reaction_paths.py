@@ -86,6 +86,9 @@ def test_a_single_tapered_row_is_pressed_by_its_own_radial_load() -> None:
     found = carried_loads(rated, [[0, 0, -radial, 0, 0, 0], [-9e4, 0, -radial, 0, 0, 0]])
     least = radial / (2 * 0.4 / np.tan(np.radians(15.0)))
     assert_allclose(found.loads[:, 0], [least, 9e4])
+    # the lines of contact meet on the axis, where the radial force acts
+    centre = row.place - row.radius * np.tan(row.angle)
+    assert_allclose(found.loads[:, 3], -centre * -radial)
     solved = equilibrium(rated.bearing, found.loads)
     assert solved.converged.all()
     share = load_zones(rated.bearing, solved.displacements)[0].loaded / 20
