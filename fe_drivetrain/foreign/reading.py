@@ -160,6 +160,13 @@ def _check_file(file: Path, limits: Limits) -> None:
         )
 
 
+def _named(status: int) -> str:
+    """An exit status in words: the name of the signal that ended a process, if one did."""
+    with suppress(ValueError):
+        return signal.Signals(-status).name
+    return f"status {status}"
+
+
 def _ended(file: Path, status: int, limits: Limits) -> str:
     if status in (-getattr(signal, "SIGXCPU", 24), -getattr(signal, "SIGKILL", 9)):
         what = f"takes more than {limits.seconds} s of processor time"
@@ -174,6 +181,6 @@ def _ended(file: Path, status: int, limits: Limits) -> str:
     else:
         what = (
             f"makes its reader fail, most likely for want of memory ({limits.memory / 1e9:g} GB) "
-            "or because it is damaged"
+            f"or because it is damaged (the reader ended with {_named(status)})"
         )
     return f"{file.name} {what}: write it again, whole, with fewer and larger faces or elements"
