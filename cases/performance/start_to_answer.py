@@ -38,6 +38,7 @@ WAITING = "Wait from the command to its report, beside the goal; bars: least and
 _STUDY = ("run", "main_bearing/rmse")
 WAITS = (
     Wait(_STUDY, FIRST, 40.0),
+    Wait(_STUDY, ALONE, 25.0),
     Wait(_STUDY, SECOND, 10.0),
     Wait(("advise", "main_bearing_bonded"), ALONE, 8.0),
     Wait(("uncertainty", "main_bearing_bonded_uncertain"), ALONE, 15.0),
@@ -152,9 +153,26 @@ def run(run: Run, page: Page) -> None:
         f"{FIRST.capitalize()}: the first run of a fresh installation. {SECOND.capitalize()}: the "
         "same command once more. " + f"{ALONE.capitalize()}: a scene that was never solved."
     )
+    for sentence in of_compiling(rows):
+        page.text(sentence)
     page.section("Where it goes")
     page.table("The longest steps of the last run of each, in whatever process", steps_of(found))
     page.data("waits", rows)
+
+
+def of_compiling(rows: list[Record]) -> list[str]:
+    """What compiling adds to a first run, for each command that was run with and without it."""
+    medians = {(row["command"], row["before"]): float(row["median [s]"]) for row in rows}
+    found = []
+    for (command, before), first in medians.items():
+        alone = medians.get((command, ALONE))
+        if before == FIRST and alone is not None:
+            found.append(
+                f"'{command}' waits {first - alone:.2g} s for compiling: a first run takes "
+                f"{first / alone:.2g} times one whose loops were compiled before. The rest is "
+                "meshing and solving, which is kept for the next run."
+            )
+    return found
 
 
 def answer(page: Page, rows: list[Record]) -> None:
