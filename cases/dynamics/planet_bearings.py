@@ -115,15 +115,15 @@ def answer(page: Page, ratios: list[float], worst: float, softer: list[float]) -
     (low, high), moved = PRINTED, PRINTED_MOVED
     met = max(ratios) >= low, worst >= moved
     reached = all(met)
-    thesis = (
-        f"the thesis's {low:g} to {high:g} and {moved:g} {'are' if reached else 'are not'} reached."
-    )
     if not met[1] and softer[-1] >= moved:
         soft = f"a carrier {SOFTER[-1]:g} times as soft"
-        thesis = f"the thesis's {moved:g} is not reached without {soft}."
+        thesis = f"{moved:g} is not reached without {soft}."
+    else:
+        thesis = f"{low:g} to {high:g} and {moved:g} {'are' if reached else 'are not'} reached."
     page.answer(
         "Do rollers, clearance and a flexible carrier load the upwind planet bearing more?",
-        f"On rollers upwind over downwind is {ratios[4]:.3f}, at worst {worst:.2f}: {thesis}",
+        f"On rollers upwind over downwind is {ratios[4]:.3f}, at worst {worst:.2f}: the "
+        f"thesis's {thesis}",
         [
             page.value("upwind over downwind, rigid carrier", ratios[1], beside=low, by="thesis"),
             page.value(

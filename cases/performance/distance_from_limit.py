@@ -107,7 +107,8 @@ def run(run: Run, page: Page) -> None:
     for name in names:
         with run.step(f"{name}, in caches"):
             small = problems.of_size(BENCHMARKS[name](), QUICK_CACHED if run.quick else CACHED)
-            cached = a_value([timed(small) for _ in range(1 + repeats)][1:], small.n_unknowns)
+            solved = [timed(small) for _ in range(1 + repeats)][1:]
+            cached = of_one_unknown(solved, small.n_unknowns)
         for size in sizes:
             with run.step(f"{name}, {size:,} unknowns"):
                 problem = problems.of_size(BENCHMARKS[name](), size)
@@ -203,7 +204,7 @@ def bandwidths(n: int, repeats: int) -> list[float]:
     return found
 
 
-def a_value(found: list[Solved], unknowns: int) -> dict[str, float]:
+def of_one_unknown(found: list[Solved], unknowns: int) -> dict[str, float]:
     """Least time of each phase for one unknown [s], of iterations for one of them."""
     return {
         phase: min(one.seconds[phase] / passes_of(one, phase) for one in found) / unknowns

@@ -156,8 +156,7 @@ class RacesEquilibrium:
     @property
     def unbalanced(self) -> Floats:
         """(n, 5) loads less the forces of the rollers on the inner ring [N, N m]."""
-        approach, lean = roller_motions(self.races.bearing)
-        return np.asarray(self.loads - self.rollers @ approach - self.moments @ lean)
+        return self.loads - ring_loads(self.races.bearing, self.rollers, self.moments)
 
 
 def rigid_races(bearing: Bearing) -> Races:
@@ -221,6 +220,25 @@ def roller_motions(bearing: Bearing) -> tuple[Floats, Floats]:
         approach.append([axial, -radial * cos, radial * sin, -arm * sin, -arm * cos])
         lean.append([zero, zero, zero, -turns * sin, -turns * cos])
     return np.hstack(approach).T, np.hstack(lean).T
+
+
+def ring_loads(bearing: Bearing, rollers: Floats, moments: Floats) -> Floats:
+    """Loads that hold the inner ring against its rollers, by virtual work.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        Bearing with rows of rollers.
+    rollers, moments : Floats
+        Load (n, total) of each roller [N], and its moment about the roller's middle [N m].
+
+    Returns
+    -------
+    loads : Floats
+        Loads (n, 5) Fx, Fy, Fz [N], My, Mz [N m] about the bearing's centre.
+    """
+    approach, lean = roller_motions(bearing)
+    return np.asarray(rollers @ approach + moments @ lean)
 
 
 def equilibrium_on_races(

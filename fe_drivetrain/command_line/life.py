@@ -47,8 +47,7 @@ def life_command(context: typer.Context, asked: LifeRequest) -> int:
     options, place, events = asked.options(context), asked.place, asked.events
     check_events(found, events)
     files = recorded_files(asked.loads)
-    if place is not None:
-        require_several(len(files))
+    require_several(place, len(files))
     series = SeriesFiles(files)
     from fe_drivetrain.elasticity.compiled_ahead import compiled_ahead
 

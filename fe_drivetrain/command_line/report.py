@@ -42,8 +42,7 @@ def report_command(context: typer.Context, asked: ReportRequest) -> int:
 
     needs_browser = browser() if asked.pdf or asked.png else ""
     own = own_loads(asked.loads, asked.skip, scene, asked.channels)
-    if asked.site is not None:
-        require_several(len(own.histories))
+    require_several(asked.place, len(own.histories))
     folder = asked.folder.resolve()
     if needs_browser:
         check_result_folder(folder / PRINTED)

@@ -185,8 +185,7 @@ def life(
     """
     asked = LifeOptions() if options is None else options
     paths = recorded_files(files)
-    if site is not None:
-        require_several(len(paths))
+    require_several(site, len(paths))
     report("bearings")
     return lives_under(
         DrivetrainBearings(drivetrain, asked),

@@ -132,10 +132,23 @@ def peak_across(name: str, of: Statistics) -> tuple[str, float, float | None]:
     peak, band : float, float or None
         Value with its sign, and what the mesh may change of it [kN].
     """
-    ends = of.values[1:3][:, [0, 2]]
-    row, end = np.unravel_index(int(np.abs(ends).argmax()), ends.shape)
-    band = None if of.band is None else float(of.band[1 + row]) / 1e3
-    return f"peak {FORCES[1 + row]} on {name} [kN]", float(ends[row, end]) / 1e3, band
+    component = component_across(of)
+    row = FORCES.index(component)
+    ends = of.values[row, [0, 2]]
+    band = None if of.band is None else float(of.band[row]) / 1e3
+    return f"peak {component} on {name} [kN]", float(ends[np.abs(ends).argmax()]) / 1e3, band
+
+
+def component_across(of: Statistics) -> str:
+    """Which force across the shaft comes farthest from zero, "Fy" or "Fz".
+
+    Parameters
+    ----------
+    of : Statistics
+        Statistics of a reaction.
+    """
+    farthest = np.abs(of.values[1:3][:, [0, 2]]).max(axis=1)
+    return FORCES[1 + int(farthest.argmax())]
 
 
 def _cycles(samples: Floats, least: float) -> Cycles:

@@ -8,7 +8,11 @@ from fe_drivetrain.report.answer import KeyFigure
 from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite.findings import Findings
 from fe_drivetrain.shafts.fidelity.judgement import Judgement
-from fe_drivetrain.studies.reaction_statistics import ReactionStatistics, peak_across
+from fe_drivetrain.studies.reaction_statistics import (
+    ReactionStatistics,
+    component_across,
+    peak_across,
+)
 from fe_drivetrain.studies.shown_units import bearing_in_words
 
 _PEAKS, _STIFFNESSES = 3, 2  # key figures of each kind
@@ -37,12 +41,11 @@ def state_answer(
     cautions : sequence of str
         What the model warns of.
     """
-    named = {
-        name: peak_across(name, reactions[name].whole)[0].partition(" [")[0]
+    peaks = {
+        name: found.judged(peak_across(name, reactions[name].whole)[0].partition(" [")[0])
         for name in bearings
         if name in reactions
     }
-    peaks = {name: found.judged(quantity) for name, quantity in named.items()}
     first, *others = sorted(peaks, key=lambda name: -abs(peaks[name].value))
     tilting = [one.quantity for one in found.figures if one.quantity.startswith("K_R ")]
     figures = [
@@ -53,7 +56,7 @@ def state_answer(
     if len(figures) < _PEAKS and _GEARBOX in reactions:
         figures.append(found.value(*peak_across(_GEARBOX, reactions[_GEARBOX].whole)))
     who = bearing_in_words(first)
-    component = named[first].split()[1]  # of "peak Fz on front"; both together are larger
+    component = component_across(reactions[first].whole)  # both together may be larger
     found.answer(
         "What do the bearings carry under these loads, and which model is enough?",
         f"{who[:1].upper()}{who[1:]} carries up to {_size(peaks[first])} in {component}; "

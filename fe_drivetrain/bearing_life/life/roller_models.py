@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from fe_drivetrain.bearing.answers import by_row, lamina_loads, laminae_of_contacts
 from fe_drivetrain.bearing.geometry import LAMINAE, BallRow, Bearing, RollerRow
-from fe_drivetrain.bearing.races import Races, equilibrium_on_races, roller_motions
+from fe_drivetrain.bearing.races import Races, equilibrium_on_races, ring_loads, roller_motions
 from fe_drivetrain.bearing.rolling import Equilibrium, equilibrium, free_motions, three_degrees
 from fe_drivetrain.bearing_life.life.steps import Steps
 from fe_drivetrain.common.arrays import Bools, Floats, chunks
@@ -191,23 +191,15 @@ def unbalanced(bearing: Bearing, steps: Steps) -> float:
     """
     if any(isinstance(row, BallRow) for row in bearing.rows):
         return np.nan
-    carried = _ring_loads(bearing, steps.laminae)
+    along = [row.places for row in with_laminae(bearing).rows if isinstance(row, RollerRow)]
+    rollers = np.hstack([q.sum(axis=2) for q in steps.laminae])
+    moments = np.hstack([q @ x for q, x in zip(steps.laminae, along, strict=True)])
+    carried = ring_loads(bearing, rollers, moments)
     motions, _ = free_motions(bearing)
     size = np.linalg.norm(steps.loads @ motions, axis=1)
     left = np.linalg.norm((carried - steps.loads) @ motions, axis=1)
     judged = steps.converged & (size > 0.0)
     return float((left[judged] / size[judged]).max(initial=0.0))
-
-
-def _ring_loads(bearing: Bearing, laminae: tuple[Floats, ...]) -> Floats:
-    """Loads (n, 5) that hold the inner ring against its laminae, by virtual work."""
-    approach, lean = roller_motions(bearing)
-    sliced = with_laminae(bearing)
-    along = [row.places for row in sliced.rows if isinstance(row, RollerRow)]
-    middles = np.hstack([q.sum(axis=2) for q in laminae])
-    tilting = np.hstack([q @ x for q, x in zip(laminae, along, strict=True)])
-    found: Floats = middles @ approach + tilting @ lean
-    return found
 
 
 def _on_races(races: Races, shapes: int | None, loads: Floats) -> LaminaLoads:

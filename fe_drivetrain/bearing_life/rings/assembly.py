@@ -22,8 +22,8 @@ from fe_drivetrain.bearing.race_newton import Body
 from fe_drivetrain.bearing.races import (
     SOFTEST_LEFT_OUT,
     contact_compliance,
+    ring_loads,
     roller_lengths,
-    roller_motions,
     soft_springs,
     solve_on_body,
 )
@@ -170,9 +170,9 @@ class AssemblyEquilibrium:
         loads : Floats
             Fx, Fy, Fz, My, Mz.
         """
-        approach, lean = roller_motions(self.assembly.bearings[name])
         at = self._columns(name)
-        return np.asarray(self.rollers[:, at] @ approach + self.moments[:, at] @ lean)
+        bearing = self.assembly.bearings[name]
+        return ring_loads(bearing, self.rollers[:, at], self.moments[:, at])
 
     def motions(self, name: str) -> Floats:
         """Motions (n, 6) of a reference point of the scene, as "hub" [m, rad].

@@ -14,7 +14,6 @@ from fe_drivetrain.common.arrays import Floats
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.common.scaling import diagonal_roots
 from fe_drivetrain.common.short_repr import short_repr
-from fe_drivetrain.common.threads import one_blas_thread
 from fe_drivetrain.dynamics.bodies.modes import likest_shapes
 from fe_drivetrain.dynamics.whirl.rotor import Rotor, equations, hysteresis
 
@@ -117,8 +116,6 @@ def sense_word(sense: float) -> str:
     return FORWARD if sense > 0 else BACKWARD
 
 
-# matrices of a shaft are small: threads of BLAS would only wait for each other
-@one_blas_thread()
 def whirl_modes(rotor: Rotor, speed: float, count: int | None = None) -> WhirlModes:
     """Modes of a rotor at a speed, with all damping.
 
@@ -260,7 +257,6 @@ def _senses(rotor: Rotor, shapes: Complex) -> Floats:
     return np.asarray((forward - backward) / (forward + backward))
 
 
-@one_blas_thread()
 def whirl_chart(rotor: Rotor, speeds: Sequence[float], count: int) -> WhirlChart:
     """Modes over the speed, each followed by its shape.
 
@@ -294,7 +290,6 @@ def whirl_chart(rotor: Rotor, speeds: Sequence[float], count: int) -> WhirlChart
     return WhirlChart(np.array([0.0, *speeds]), frequencies, decrements, senses)
 
 
-@one_blas_thread()
 def critical_speeds(rotor: Rotor, limit: float, order: float = 1.0) -> list[Critical]:
     """Undamped speeds at which whirl has a multiple of the speed, by one eigenproblem.
 
@@ -373,7 +368,6 @@ def synchronous(
     return 1 / np.sqrt(values[kept]), scale[:, None] * vectors[:, kept]
 
 
-@one_blas_thread()
 def chart_criticals(rotor: Rotor, limit: float, order: float = 1.0) -> list[Critical]:
     """Speeds at which an order crosses the undamped frequencies of the Campbell diagram.
 
@@ -405,7 +399,6 @@ def chart_criticals(rotor: Rotor, limit: float, order: float = 1.0) -> list[Crit
     return sorted(found, key=lambda one: one.speed)
 
 
-@one_blas_thread()
 def stability_limit(rotor: Rotor, limit: float) -> float | None:
     """Lowest speed from which a whirl grows; None where all is damped up to the limit [rad/s].
 

@@ -166,11 +166,13 @@ def require_winds(files: Sequence[Path], winds: Sequence[float]) -> None:
         )
 
 
-def require_several(count: int) -> None:
+def require_several(site: Site | None, count: int) -> None:
     """Refuse a site's winds for one file before anything is computed; `require_winds` does later.
 
     Parameters
     ----------
+    site : Site or None
+        Whose winds weight the files; None asks nothing of them.
     count : int
         How many files there are.
 
@@ -179,11 +181,11 @@ def require_several(count: int) -> None:
     InputError
         There is one.
     """
-    if count == 1:
-        site = argument("site")
+    if site is not None and count == 1:
+        name = argument("site")
         raise InputError(
-            f"{site} weights winds, and there is one file: give files of two winds or more, or "
-            f"leave {site} out"
+            f"{name} weights winds, and there is one file: give files of two winds or more, or "
+            f"leave {name} out"
         )
 
 
