@@ -21,7 +21,6 @@ from fe_drivetrain.dynamics import (
     system_modes,
     with_rim,
 )
-from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.report.suite.chosen import SETTING
 
@@ -97,25 +96,18 @@ def run(run: Run, page: Page) -> None:
     )
 
 
-def thickness_within(rows: list[Record]) -> float:
-    """Thickness [mm] at which the lowest frequency is `NEAR` below the rigid ring's."""
-    change = np.log([-row[LOWEST] for row in rows])
-    thickness = np.log([row[THICKNESS] for row in rows])
-    return float(np.exp(np.interp(np.log(NEAR), change[::-1], thickness[::-1])))
-
-
 def answer(page: Page, rows: list[Record]) -> None:
     """State what a thin and a thick rim change of the lowest frequency."""
     thin, thick = rows[0], rows[-1]
-    enough = thickness_within(rows)
+    enough = min(row[THICKNESS] for row in rows if -row[LOWEST] <= NEAR)
     names = {id(row): f"rim of {row[THICKNESS]:.0f} mm" for row in (thin, thick)}
     page.answer(
         "How thin may the rim of a ring gear be, if the model has a rigid ring?",
         f"With a rigid ring the lowest frequency is right within {NEAR:g}\u00a0% for rims of "
-        f"{formatted(enough, 2)}\u00a0mm and more; a rim of {thin[THICKNESS]:.0f}\u00a0mm lowers "
+        f"{enough:.0f}\u00a0mm and more; a rim of {thin[THICKNESS]:.0f}\u00a0mm lowers "
         f"it by {-thin[LOWEST]:.0f}\u00a0%.",
         [
-            page.value(f"least thickness within {NEAR:g} %, between those computed [mm]", enough),
+            page.value(f"least thickness within {NEAR:g} %, of those computed [mm]", enough),
             *(
                 page.value(f"change of the lowest frequency, {names[id(row)]} [%]", row[LOWEST])
                 for row in (thin, thick)
