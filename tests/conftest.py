@@ -321,6 +321,14 @@ def quick_run(kept_folder: Path) -> QuickRun:
     return QuickRun(folder, kept_folder, bool(given))
 
 
+@pytest.fixture(scope="session")
+def every_quick_run(quick_run: QuickRun) -> QuickRun:
+    """Results of all cases, from a run of them all; a test that asks for them runs no case."""
+    if not quick_run.given:
+        pytest.skip(f"{QUICK_VARIABLE} names no folder of results, as `make cases` does")
+    return quick_run
+
+
 @pytest.fixture(scope="session", autouse=True)
 def interruptible() -> None:
     """A shell that runs this in the background ignores Ctrl-C, and so would all its children."""

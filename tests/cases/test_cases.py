@@ -1,4 +1,4 @@
-"""Every case in its quick form, run once for all tests: its checks pass, and it says why."""
+"""Every case in its quick form, from a run of them all: its checks pass, and it says why."""
 
 import pytest
 from conftest import QuickRun
@@ -26,8 +26,8 @@ CASES = [
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.quick(n)) for n in CASES])
-def test_its_checks_pass_and_say_why(quick_run: QuickRun, name: str) -> None:
-    results = quick_run(name)
+def test_its_checks_pass_and_say_why(every_quick_run: QuickRun, name: str) -> None:
+    results = every_quick_run(name)
     failed = [(v.quantity, v.computed, v.reference) for v in results.verdicts if not v.passed]
     assert not failed
     assert results.verdicts
@@ -41,8 +41,8 @@ STABILITY = [name for name in CASES if name.startswith("stability/")]
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.quick(n)) for n in STABILITY])
-def test_a_sweep_says_where_its_method_fails(quick_run: QuickRun, name: str) -> None:
-    results = quick_run(name)
+def test_a_sweep_says_where_its_method_fails(every_quick_run: QuickRun, name: str) -> None:
+    results = every_quick_run(name)
     assert results.limits
     for limit in results.limits:
         assert limit.low is None or limit.high is None or limit.low <= limit.high, limit
@@ -51,22 +51,22 @@ def test_a_sweep_says_where_its_method_fails(quick_run: QuickRun, name: str) -> 
 
 
 @pytest.mark.quick(*STABILITY)
-def test_the_atlas_lists_every_limit(quick_run: QuickRun) -> None:
+def test_the_atlas_lists_every_limit(every_quick_run: QuickRun) -> None:
     for name in STABILITY:
-        quick_run(name)
-    write_index(quick_run.folder)
-    atlas = (quick_run.folder / "atlas.html").read_text()
+        every_quick_run(name)
+    write_index(every_quick_run.folder)
+    atlas = (every_quick_run.folder / "atlas.html").read_text()
     for name in STABILITY:
         assert f'href="{name}/report.html"' in atlas
-    assert 'href="atlas.html"' in (quick_run.folder / "index.html").read_text()
+    assert 'href="atlas.html"' in (every_quick_run.folder / "index.html").read_text()
 
 
 LADDERS = ("fidelity/main_bearing_spherical", "fidelity/housing_on_bedplate")
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.quick(n)) for n in LADDERS])
-def test_a_level_is_found_that_is_enough(quick_run: QuickRun, name: str) -> None:
-    levels = quick_run(name).figures["levels"]
+def test_a_level_is_found_that_is_enough(every_quick_run: QuickRun, name: str) -> None:
+    levels = every_quick_run(name).figures["levels"]
     assert [level["level"] for level in levels] == [0, 1, 1, 2, 3, 4]
     assert levels[-1]["error against the last level [-]"] == 0.0
     assert levels[1]["time [s]"] < levels[-1]["time [s]"]

@@ -12,8 +12,8 @@ MEASURING = [
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.quick(n)) for n in MEASURING])
-def test_what_time_must_not_change_holds(quick_run: QuickRun, name: str) -> None:
-    results = quick_run(name)
+def test_what_time_must_not_change_holds(every_quick_run: QuickRun, name: str) -> None:
+    results = every_quick_run(name)
     assert not [(v.quantity, v.computed, v.reference) for v in results.verdicts if not v.passed]
     assert results.verdicts
 

@@ -32,7 +32,7 @@ from fe_drivetrain.report.pictures.view import ALONG_THE_SHAFT, SIZE, STRIP, Vie
 from fe_drivetrain.shafts.response.model import Model
 from fe_drivetrain.shafts.response.unit_loads import Response
 
-needs_opengl = pytest.mark.skipif(not can_draw(), reason="no off-screen OpenGL here")
+needs_opengl = pytest.mark.skipif("not can_draw()", reason="no off-screen OpenGL here")
 
 coordinates = st.tuples(*[st.floats(-20, 20)] * 3)
 
