@@ -1,6 +1,7 @@
 """Designs solved from what neighbours have left, beside each design for itself."""
 
 import pickle
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from coarse_scenes import coarse_scene
 from fe_drivetrain.common.errors import InputError
 from fe_drivetrain.drivetrain_file.reading import change_scene
 from fe_drivetrain.shafts.response.model import LOADS, build_model
-from fe_drivetrain.shafts.response.neighbours import NOTHING, Neighbours, Reuse
+from fe_drivetrain.shafts.response.neighbours import EVERYTHING, NOTHING, Neighbours, Reuse
 from fe_drivetrain.shafts.response.unit_loads import some_responses, unit_load_response
 from fe_drivetrain.shafts.uncertainty.assembly_samples import SAMPLED_ERROR, assembly_of
 from fe_drivetrain.shafts.uncertainty.input_study import study
@@ -61,6 +62,18 @@ def test_a_moved_mesh_is_as_good_as_a_mesh_of_its_own(scene):
     exact = stiffness(unit_load_response(alone.model(finer)))
     errors = [np.abs(stiffness(r) / exact - 1.0) for r in (moved, own)]
     assert (errors[0] < 1.2 * errors[1] + 2e-3).all()
+
+
+@pytest.mark.parametrize("reuse", [EVERYTHING, NOTHING])
+def test_a_design_goes_when_nobody_uses_it(scene, reuse):
+    near = Neighbours(reuse)
+    used = []
+    for bore in (0.1, 0.105, 0.11):
+        model = near.model(change_scene(scene, {BORE: bore}))
+        some_responses(model, range(6))
+        used.append(weakref.ref(model))
+        del model
+    assert [one() for one in used] == [None, None, None]
 
 
 def test_moduli_density_and_springs_need_no_other_mesh(scene):

@@ -241,12 +241,12 @@ class _Preparation:
         elimination = eliminate(self._with_pivots(model), model.n_dofs)
         free = family.free
         same = free is not None and np.array_equal(free, elimination.free)
-        between = _Between(family.movable.mesh.points, model.mesh, family.pattern, elimination)
+        mesh, springs = model.mesh, model.springs
+        between = _Between(family.movable.mesh.points, mesh, family.pattern, elimination)
         worn = family.worn or self.neighbours.reuse.growth == 0.0
 
-        def whole() -> System:
-            mesh = model.mesh
-            return reduce(mesh.points, mesh.cells, stiffness, elimination, model.springs)
+        def whole() -> System:  # without the model, which its solver would then keep for good
+            return reduce(mesh.points, mesh.cells, stiffness, elimination, springs)
 
         if kept is None or worn or not same or method not in ("auto", kept.method):
             family.free = elimination.free
