@@ -15,6 +15,7 @@ _STRIP = 0.24  # share of the height that the strip of differences takes
 _GAP = 0.08
 _STRIP_HEIGHT = 90  # pixels that the chart grows for it
 _PLAIN_HEIGHT = 460
+_ROOM = 0.035  # share of the width that a name along a line takes
 
 
 class ChartParts(TypedDict, total=False):
@@ -57,7 +58,7 @@ def add_parts(figure: dict[str, Any], parts: ChartParts) -> None:
         if ends is not None:
             layout[axis]["range"] = [_on(layout[axis], end) for end in ends]
     if parts.get("events"):
-        draw_events(layout, parts["events"])
+        draw_events(figure, parts["events"])
     if parts.get("beside"):
         _add_strip(figure, parts["beside"])
 
@@ -67,18 +68,27 @@ def _on(axis: Mapping[str, Any], value: float) -> float:
     return math.log10(value) if axis.get("type") == "log" else float(value)
 
 
-def draw_events(layout: dict[str, Any], events: Mapping[str, float]) -> None:
+def draw_events(figure: dict[str, Any], events: Mapping[str, float]) -> None:
     """Draw a dashed line for each event, its name along it, or above horizontal bars.
+
+    Names of lines that are close to each other stand side by side before the first of them.
 
     Parameters
     ----------
-    layout : dict
-        Plotly's layout, which takes the lines; the lists that it had are not changed.
+    figure : dict
+        Entries "data" and "layout" of Plotly; the layout takes the lines, and the lists that it had
+        are not changed.
     events : dict of str to float
         What happens, and where on the horizontal axis.
     """
+    layout = figure["layout"]
     # bars would be under a name that stands along the line
-    along: dict[str, Any] = {"xanchor": "right", "yanchor": "top", "textangle": -90}
+    along: dict[str, Any] = {
+        "xanchor": "right",
+        "yanchor": "top",
+        "textangle": -90,
+        "align": "right",
+    }
     above: dict[str, Any] = {"xanchor": "center", "yanchor": "bottom"}
     line = {"color": _GREY, "width": 1.5, "dash": "dash"}
     layout["shapes"] = [
@@ -92,17 +102,41 @@ def draw_events(layout: dict[str, Any], events: Mapping[str, float]) -> None:
         *layout.get("annotations", ()),
         *(
             {
-                "text": name,
-                "x": _on(layout.get("xaxis", {}), float(x)),
+                "text": "<br>".join(names),
+                "x": x,
                 "yref": "paper",
                 "y": 1,
                 **(above if "barmode" in layout else along),
                 "showarrow": False,
                 "font": {"size": 12},
             }
-            for name, x in events.items()
+            for x, names in _side_by_side(figure, events)
         ),
     ]
+
+
+def _side_by_side(
+    figure: Mapping[str, Any], events: Mapping[str, float]
+) -> list[tuple[float, list[str]]]:
+    """Where names of events stand on the axis, those together that have no room of their own."""
+    axis = figure["layout"].get("xaxis", {})
+    places = [(_on(axis, x), name) for name, x in events.items()]
+    ends = axis.get("range") or [
+        _on(axis, x)
+        for one in figure["data"]
+        for x in one.get("x", ())
+        if isinstance(x, float | int) and (x > 0.0 or axis.get("type") != "log")
+    ]
+    room = _ROOM * (max(ends, default=0.0) - min(ends, default=0.0))
+    found: list[tuple[float, list[str]]] = []
+    last = -math.inf
+    for x, name in sorted(places):
+        if x - last < room:
+            found[-1][1].append(name)
+        else:
+            found.append((x, [name]))
+        last = x
+    return found
 
 
 def _add_strip(figure: dict[str, Any], reference: str) -> None:

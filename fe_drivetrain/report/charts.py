@@ -121,9 +121,9 @@ def mark_events(item: Chart, events: Mapping[str, float]) -> Chart:
     events : dict of str to float
         What happens, and where on the horizontal axis.
     """
-    layout = dict(item.figure["layout"])
-    draw_events(layout, events)
-    return item.model_copy(update={"figure": {**item.figure, "layout": layout}})
+    figure = {**item.figure, "layout": dict(item.figure["layout"])}
+    draw_events(figure, events)
+    return item.model_copy(update={"figure": figure})
 
 
 def density_chart(

@@ -59,7 +59,9 @@ Item = Text | Table | Chart | Image | Solid
 _PNG = b"\x89PNG\r\n\x1a\n"
 _MOST_ROWS = 12  # of a table that is not scrolled inside
 _HERO_HEIGHT = 400  # pixels, so that the first screen holds all that answers
-_MAY_SHRINK = 560  # charts that are higher than this need their height
+_MAY_SHRINK = 560  # charts that are higher than this are bars, which may stand closer
+_CLOSER = 0.6  # so close that their names can still be read
+_MOST_PIXELS = 700  # of a chart of the first screen that is not scrolled inside
 _QUANTITIES = 6  # of a case that are shown over its runs
 _FILES = 60  # to which a page links at most
 _KINDS = {
@@ -136,7 +138,7 @@ def render(results: Results, folder: Path, shared: Path) -> str:
         cautions=_cautions(results),
         most_cautions=MAX_CAUTIONS,
         most_rows=_MOST_ROWS,
-        most_pixels=_MAY_SHRINK,
+        most_pixels=_MOST_PIXELS,
         hero=_hero(results, items),
         explained=bool(results.answer and results.details),
         runs=runs_of_page(results, shared),
@@ -225,9 +227,11 @@ def _contents(section: Section) -> str:
 
 
 def _hero_height(item: Chart | Image | Solid) -> int:
-    """Pixels of the chart of the first screen; a long list of bars is scrolled inside."""
+    """Pixels of the chart of the first screen; bars stand closer there than in a fold."""
     height = chart_height(item)
-    return min(height, _HERO_HEIGHT) if height <= _MAY_SHRINK else height
+    if height <= _MAY_SHRINK:
+        return min(height, _HERO_HEIGHT)
+    return _HERO_HEIGHT + round(_CLOSER * (height - _MAY_SHRINK))
 
 
 @lru_cache(maxsize=1)

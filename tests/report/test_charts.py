@@ -22,6 +22,17 @@ from fe_drivetrain.report.suite.page import Page
 from fe_drivetrain.report.table_text import band_columns, cell_texts
 
 
+@pytest.mark.parametrize("log", ["", "x"])
+def test_names_of_events_that_are_close_stand_side_by_side(log: str) -> None:
+    curve = [trace("all", [1.0, 1e3, 1e4], [1.0, 2.0, 3.0])]
+    # a hundredth of a decade apart, and of the whole width
+    near, far = ({"b": 102.0, "a": 100.0}, 5e3) if log else ({"b": 200.0, "a": 100.0}, 5e3)
+    item = chart("c", curve, "t [s]", "F [N]", log, events={**near, "later": far})
+    layout = item.figure["layout"]
+    assert [one["text"] for one in layout["annotations"]] == ["a<br>b", "later"]
+    assert len(layout["shapes"]) == 3
+
+
 def test_events_are_lines_with_their_names_on_either_kind_of_axis() -> None:
     curve = [trace("force", [1.0, 1000.0], [0.0, 1.0])]
     for log, at in (("", 100.0), ("x", 2.0)):
