@@ -12,6 +12,7 @@ from fe_drivetrain.bearing_life.rings import (
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.housed_bearing import ASSUMED_HOUSING, NAME, housed_scene
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.typeset import MINUS
 from fe_drivetrain.report import roller_chart, rolling_elements
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.fidelity import unit_stiffness
@@ -73,6 +74,7 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, rows: list[Record], hero: str) -> None:
     """State what solids change of the peak roller, load by load."""
     changes = [row[CHANGE] for row in rows]
+    span = f"{min(changes):+.1f}\u00a0% to {max(changes):+.1f}\u00a0%".replace("-", MINUS)
     page.found("largest change of the peak roller [%]", max(changes, key=abs))
     peaks = [
         page.value(
@@ -84,12 +86,17 @@ def answer(page: Page, rows: list[Record], hero: str) -> None:
         for name, row in zip(LOAD_NAMES, rows, strict=True)
     ]
     page.answer(
-        "How far is the peak roller of a beam on rigid rings from that of solids?",
-        "Solids of shaft, ring and housing change the peak roller by "
-        f"{min(changes):+.1f} to {max(changes):+.1f}\u00a0% against a beam on rigid rings, housing "
-        "in series.",
-        [page.judged("largest change of the peak roller"), *peaks],
+        "How much does the peak roller load change with shaft, ring and housing as solids?",
+        f"Solid models of shaft, ring and housing change the peak roller load by {span} against a "
+        "beam on rigid rings.",
+        [
+            page.judged(
+                "largest change of the peak roller", "largest change of the peak roller load"
+            ),
+            *peaks,
+        ],
         hero,
+        ["The beam has the stiffness of the housing in series with that of the rollers."],
     )
 
 

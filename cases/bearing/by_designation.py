@@ -102,28 +102,28 @@ def answer(page: Page, banded: Sequence[Banded], printed: int, alone: float) -> 
     }
     life = widths[QUANTITIES[0]]
     page.answer(
-        "How well does a bearing's catalogue page fix its reference life and stiffness?",
-        f"From its page alone L10r is known within ±{percent_text(life)}, stiffness within "
-        f"±{percent_text(widths[QUANTITIES[1]])}; {held} of {len(banded)} published values lie in "
-        "these bands.",
+        "How well do life and stiffness of a bearing follow from its catalogue page alone?",
+        f"The catalogue page alone gives the reference life L10r within ±{percent_text(life)} and "
+        f"the stiffness within ±{percent_text(widths[QUANTITIES[1]])}; {held} of {len(banded)} "
+        "published values lie in these bands.",
         [
             page.judged(COVERED, "published values within their bands"),
-            page.value("half width of the band of L10r, largest [%]", 100.0 * life),
-            page.value("half width, L10r, where the profile is the standard's [%]", 100.0 * alone),
-            page.value("half width, stiffness, largest [%]", 100.0 * widths[QUANTITIES[1]]),
-            page.value("half width, pressure, largest [%]", 100.0 * widths[QUANTITIES[2]]),
+            page.value("largest uncertainty ± of L10r [%]", 100.0 * life),
+            page.value("uncertainty ± of L10r, roller profile known [%]", 100.0 * alone),
+            page.value("largest uncertainty ± of stiffness [%]", 100.0 * widths[QUANTITIES[1]]),
+            page.value("largest uncertainty ± of pressure [%]", 100.0 * widths[QUANTITIES[2]]),
             page.value(
                 "printed raceway diameters within the bands", printed, at_least=2 * len(RACEWAYS)
             ),
         ],
         hero=HERO,
         cautions=[
-            "Lengths of rollers are published of one bearing alone; those of the others follow "
-            "from C0 by ISO 76, as those of the ensemble do.",
-            "The ranges that the ensemble is drawn from were chosen with these bearings in sight: "
-            "coverage of others may be less.",
-            "Profiles of rollers are from half to twice the standard's, which no page prints: they "
-            "make most of the band of L10r.",
+            "The length of the rollers is published for one bearing only; for the others it "
+            "follows from C0 by ISO 76, as it does for the assumed samples.",
+            "The ranges of the assumed dimensions were chosen with these bearings known: values of "
+            "other bearings may lie outside of the bands more often.",
+            "No catalogue page prints the profile of the rollers, assumed here as half to twice "
+            "that of the standard: this causes most of the uncertainty of L10r.",
         ],
     )
 

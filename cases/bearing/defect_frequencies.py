@@ -141,20 +141,20 @@ def answer(page: Page, rows: list[Record]) -> None:
     worst = max(rows, key=lambda row: abs(float(row["own"]) / float(row["printed"]) - 1.0))
     away = 100.0 * abs(float(worst["own"]) / float(worst["printed"]) - 1.0)
     figures = [
-        page.judged(f"{name}: {key} over the speed", f"{name}, {key}", "printed")
-        for name, key in (
-            ("SKF 6205-2RS", "BPFI"),
-            ("SKF 6205-2RS", "BPFO"),
-            ("SKF 6205-2RS", "twice BSF"),
-            ("MB ER-16K", "BPFI"),
-            ("MB ER-16K", "FTF"),
+        page.judged(f"{name}: {key} over the speed", f"{name}, {words} per turn", "printed")
+        for name, key, words in (
+            ("SKF 6205-2RS", "BPFI", "inner ring (BPFI)"),
+            ("SKF 6205-2RS", "BPFO", "outer ring (BPFO)"),
+            ("SKF 6205-2RS", "twice BSF", "ball (twice BSF)"),
+            ("MB ER-16K", "BPFI", "inner ring (BPFI)"),
+            ("MB ER-16K", "FTF", "cage (FTF)"),
         )
     ]
     page.answer(
-        "At which frequencies do defects of a bearing strike?",
-        f"All {len(rows)} printed frequencies of three bearings come out, within "
-        f"{away:.2g}\u00a0% at most, as far as their printed sizes tell.",
+        "Do the computed defect frequencies of bearings agree with printed ones?",
+        f"All {len(rows)} printed defect frequencies of three bearings agree with the computed "
+        f"ones within {away:.2g}\u00a0%, which rounding of the printed dimensions explains.",
         figures,
         HERO,
-        ["Rolling without slip: real bearings differ by 1 % or 2 % from these frequencies."],
+        ["The elements roll without slip: frequencies of real bearings differ by 1 % or 2 %."],
     )

@@ -15,6 +15,7 @@ from fe_drivetrain.cases.references.thesis_beam import (
     radial,
 )
 from fe_drivetrain.common import Bools, Floats
+from fe_drivetrain.common.typeset import MINUS
 from fe_drivetrain.report import rolling_elements, trace
 from fe_drivetrain.report.suite import Page, Record, Run
 
@@ -66,23 +67,22 @@ def answer(page: Page, first: Record) -> None:
     thrust, force, moment = (first[f"with {of}"] for of in ("thrust", "radial force", "My"))
     overhanging = first["of these with overhanging moment [%]"]
     holds = overhanging == 100.0 and force < -CLEAR and abs(thrust) < NONE
-    ends = (
-        f"with thrust {thrust:.2f}, as good as none, as the thesis states"
-        if holds
-        else f"with thrust {thrust:.2f}, not none as the thesis states"
-    )
+    ends = "practically none, as the thesis states" if holds else "where the thesis states none"
+    both = f"{force:.2f} and {moment:.2f}".replace("-", MINUS)
     page.answer(
         "What moves the inner ring of a main bearing along the axis?",
-        "The moment's direction moves the ring: its correlation with the axial displacement is "
-        f"{moment:.2f}, "
-        f"{ends}.",
+        f"Radial force and bending moment move the ring along its axis (correlations {both}); "
+        f"thrust has {f'{thrust:.2f}'.replace('-', MINUS)}, {ends}.",
         [
-            page.value("correlation with the moment about y", moment),
+            page.value("correlation with the bending moment about y", moment),
             page.value("correlation with radial force", force),
             page.value("correlation with thrust", thrust, beside=0.0, by="thesis: none"),
-            page.judged("ring moves upwind against the thrust, share of steps"),
+            page.judged(
+                "ring moves upwind against the thrust, share of steps",
+                "steps in which the ring moves upwind, against the thrust",
+            ),
             page.value(
-                "upwind steps with the rotor's weight prevailing [%]",
+                "share of these steps in which the rotor's weight governs the moment [%]",
                 overhanging,
                 beside=100.0,
                 by="thesis",
@@ -90,8 +90,8 @@ def answer(page: Page, first: Record) -> None:
         ],
         "Axial displacement against the moment's direction: 0 is that of the rotor's weight",
         [
-            "Correlations are over one wind file at 12 m/s, for rows face to face at 38 deg "
-            "without the housing; the thesis prints no contact angle."
+            "Correlations are those of one wind file at 12 m/s and of rows face to face with a "
+            "contact angle of 38° in a rigid housing; the thesis prints no contact angle."
         ],
         claim="holds" if holds else "holds in part",
     )

@@ -115,22 +115,22 @@ def answer(page: Page, rows: list[Record], condensed: float) -> None:
     of_model = {row["model"]: row for row in largest_of_loads(rows)}
     worst = {name: of_model[name][ERROR] for name in (RIGID, PROFILED, FEW, CHOSEN)}
     micro = of_model[CHOSEN][TIME]
-    short = {RIGID: "rigid rings, straight rollers", PROFILED: "rigid rings with profile"}
-    short |= {FEW: "40 shapes, straight rollers", CHOSEN: "40 shapes with profile"}
+    short = {RIGID: "rigid rings, straight rollers", PROFILED: "rigid rings, profiled rollers"}
+    short |= {FEW: "40 shapes, straight rollers", CHOSEN: "40 shapes, profiled rollers"}
     page.answer(
-        "Which model of a bearing in a flexible housing is accurate, and what does it cost?",
-        "40 shapes of the race with profiled rollers miss the peak by "
-        f"{percent_text(worst[CHOSEN] / 100.0)} in {micro / 1e3:.2g}\u00a0ms a load; rigid "
-        f"rings miss it by up to {percent_text(worst[RIGID] / 100.0)}.",
+        "Which model of a bearing in a flexible housing is accurate, and how fast is it?",
+        "A race with 40 deformation shapes gives the peak roller load within "
+        f"{percent_text(worst[CHOSEN] / 100.0)} in {micro / 1e3:.2g}\u00a0ms; rigid rings with "
+        f"straight rollers err by up to {percent_text(worst[RIGID] / 100.0)}.",
         [
-            page.value("time per load case, 40 shapes with profile [ms]", micro / 1e3),
-            *(page.value(f"worst error, {short[n]} [%]", worst[n]) for n in reversed(worst)),
+            page.value("time per load case, 40 shapes, profiled rollers [ms]", micro / 1e3),
+            *(page.value(f"largest error, {short[n]} [%]", worst[n]) for n in reversed(worst)),
             page.value("time to condense the housing, once [s]", condensed),
         ],
         WORST_CHART,
         [
-            f"Errors are against all {ALL} shapes with {REFERENCE_LAMINAE} laminae, of the same "
-            "solid: they have no error of its mesh."
+            f"Errors are differences from all {ALL} shapes with {REFERENCE_LAMINAE} laminae per "
+            "roller, on the same mesh: the error of the mesh is not in them."
         ],
     )
 

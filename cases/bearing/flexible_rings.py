@@ -30,6 +30,7 @@ from fe_drivetrain.cases.references.housed_bearing import (
     housed_scene,
 )
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.typeset import MINUS
 from fe_drivetrain.drivetrain_file import change_scene, joint_stiffness, library_scene
 from fe_drivetrain.report import Chart, chart, roller_chart, rolling_elements, trace
 from fe_drivetrain.report.suite import Page, Record, Run
@@ -130,6 +131,7 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, rows: list[Record], hero: str) -> None:
     """State what the flexible housing changes of peak rollers and load zone."""
     changes = [row[CHANGE] for row in rows]
+    span = f"{min(changes):+.0f}\u00a0% to {max(changes):+.0f}\u00a0%".replace("-", MINUS)
     combined = next(row for row in rows if row["load"] == "combined")
     page.found("largest change of the peak roller [%]", max(changes, key=abs))
     loaded = [combined[f"loaded rollers, {rings}"] for rings in ("flexible", "rigid")]
@@ -145,13 +147,17 @@ def answer(page: Page, rows: list[Record], hero: str) -> None:
         if row["load"] in SHOWN
     ]
     page.answer(
-        "What does a flexible housing do to the peak roller and the load zone?",
-        f"The flexible housing changes the peak roller by {min(changes):+.0f} to "
-        f"{max(changes):+.0f}\u00a0% against rigid rings; a combined load is carried by "
-        f"{loaded[0]} rollers, not {loaded[1]}.",
-        [page.judged("largest change of the peak roller"), *peaks],
+        "How does a flexible housing change the peak roller load and the load zone?",
+        f"A flexible housing changes the peak roller load by {span} against rigid rings; "
+        f"{loaded[0]} rollers instead of {loaded[1]} carry a combined load.",
+        [
+            page.judged(
+                "largest change of the peak roller", "largest change of the peak roller load"
+            ),
+            *peaks,
+        ],
         hero,
-        ["Dimensions of the housing are assumed: that of the library, on a fixed foot."],
+        ["The dimensions of the housing are assumed; its foot is fixed."],
     )
 
 

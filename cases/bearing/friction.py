@@ -198,27 +198,29 @@ def answer(page: Page, rows: list[Record]) -> None:
     low, high = min(ratios), max(ratios)
     figures = [
         page.judged(
-            f"{name}: SKF's model over SKF's constant coefficient", f"{name}, over constant"
+            f"{name}: SKF's model over SKF's constant coefficient",
+            f"SKF's model over its constant coefficient, {words}",
         )
-        for name in (
-            "cylindrical_nu2220",
-            "cylindrical_sl181880",
-            "tapered_pair_32948",
-            "spherical_23180",
+        for name, words in (
+            ("cylindrical_nu2220", "NU 2220"),
+            ("cylindrical_sl181880", "SL181880"),
+            ("tapered_pair_32948", "pair of 32948"),
+            ("spherical_23180", "23180"),
         )
     ]
     page.answer(
-        "How well is the friction of a rolling bearing known?",
-        f"SKF's model and constants agree within a factor of {FACTOR:g}; other models give "
-        f"{formatted(low, 2)} to {formatted(high, 2)} times its moment in normal operation.",
+        "How well is the friction of a rolling bearing in normal operation known?",
+        "SKF's detailed model and constant coefficients agree within a factor of "
+        f"{FACTOR:g}; other models give {formatted(low, 2)} to {formatted(high, 2)} times the "
+        "friction moment of SKF's.",
         [
             *figures,
-            page.value("least moment of another model over SKF's", low),
-            page.value("largest moment of another model over SKF's", high),
+            page.value("smallest moment of another model over that of SKF's", low),
+            page.value("largest moment of another model over that of SKF's", high),
         ],
         HERO,
         [
-            "Constants of SKF but those of balls and of series 222 E are from memory, and not "
-            "verified beyond this case; factors f0 and f1 are second-hand."
+            "SKF's constants are from memory, but for those of balls and of series 222 E, and only "
+            "this case verifies them; the factors f0 and f1 are second-hand."
         ],
     )

@@ -70,17 +70,21 @@ def run(run: Run, page: Page) -> None:
 
 def answer(page: Page, worst: Record) -> None:
     """State where three degrees of freedom are exact, and what they miss elsewhere."""
-    out = f"{worst[ANGLE]:.0f} deg out of plane"
+    out = f"{worst[ANGLE]:.0f}° out of plane"
     page.answer(
         "When are three degrees of freedom enough for a double-row bearing?",
-        "Three degrees are enough only where force and moment act in one plane: "
-        f"{worst[ANGLE]:.0f}\u00a0deg out of it they miss the peak roller by "
+        "Three degrees of freedom suffice only for force and moment in one plane: "
+        f"{worst[ANGLE]:.0f}° out of plane, the peak roller load errs by "
         f"{abs(worst[PEAK]):.0f}\u00a0%.",
         [
-            page.value(f"error of the peak roller, {out} [%]", worst[PEAK]),
+            page.value(f"error of the peak roller load, {out} [%]", worst[PEAK]),
             page.value(f"side force left unbalanced, {out} [kN]", worst[SIDE]),
-            page.value(f"peak roller by five degrees, {out} [kN]", worst[FIVE]),
-            page.judged("displacements under three times the loads", by="3 to the power 1/1.1"),
+            page.value(f"peak roller load with five degrees of freedom, {out} [kN]", worst[FIVE]),
+            page.judged(
+                "displacements under three times the loads",
+                "growth of displacements under three times the loads",
+                "3 to the power 1/1.1",
+            ),
         ],
         TITLE.format(PEAK.partition(" [")[0].capitalize()),
     )

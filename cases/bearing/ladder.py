@@ -76,24 +76,29 @@ def answer(page: Page, rows: list[Record], at: dict[tuple[str, str], Record]) ->
     out = "combined, 45 deg out of plane"
     chosen, micro = worst[CHOSEN][ERROR], worst[CHOSEN][TIME]
     page.answer(
-        "Which model of a bearing between rigid rings is accurate, and what does it cost?",
-        "Five degrees with 30 profiled laminae miss the peak roller by "
-        f"{percent_text(chosen / 100.0)} in {micro / 1e3:.2g}\u00a0ms a load; closed forms miss "
-        f"it by up to {rough:.0f}\u00a0%.",
+        "Which model of a bearing between rigid rings is accurate, and how fast is it?",
+        "Five degrees of freedom with 30 profiled laminae give the peak roller load within "
+        f"{percent_text(chosen / 100.0)} in {micro / 1e3:.2g}\u00a0ms; closed forms err by up to "
+        f"{rough:.0f}\u00a0%.",
         [
-            page.value("time per load case, 30 laminae with profile [ms]", micro / 1e3),
-            page.value("worst error, 30 laminae with profile [%]", chosen),
+            page.value("time per load case, 30 profiled laminae [ms]", micro / 1e3),
+            page.value("largest error, 30 profiled laminae [%]", chosen),
             page.value(
                 "error of straight rollers, combined load [%]", at[COMBINED, STRAIGHT][ERROR]
             ),
-            page.value("error of three degrees, 45 deg out of plane [%]", at[out, THREE][ERROR]),
+            page.value(
+                "error of three degrees of freedom, 45° out of plane [%]", at[out, THREE][ERROR]
+            ),
             page.judged(
                 "closed forms added up: error of the peak roller",
-                "worst error of closed forms added up",
+                "largest error of added closed forms",
             ),
         ],
         WORST_CHART,
-        [f"Rings are rigid; errors are against {REFERENCE_LAMINAE} laminae of the same model."],
+        [
+            "The rings are rigid; errors are differences from the same model with "
+            f"{REFERENCE_LAMINAE} laminae per roller."
+        ],
     )
 
 

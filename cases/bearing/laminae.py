@@ -83,21 +83,27 @@ def answer(page: Page, error: float, crowned: list[Record]) -> None:
     """State how many laminae are enough, and what a profile does to ends and pressure."""
     end = "end over mean load"
     ends, pressures = ([crowned[k][of] for k in (0, 2)] for of in (end, PRESSURE))
+    cuts = "lowers" if ends[1] < ends[0] else "raises"
     rises = "raises" if pressures[1] > pressures[0] else "lowers"
     enough = "are enough" if error <= ENOUGH else "are not enough"
     page.answer(
         "How many laminae does a roller need, and what does its profile do?",
-        f"30 laminae {enough}, moments within {percent_text(error)}; the profile lowers "
-        f"the end's load from {ends[0]:.2f} to {ends[1]:.2f} of the mean, and {rises} pressure.",
+        f"30 laminae per roller {enough}, with moments within {percent_text(error)}; the profile "
+        f"{cuts} the load at roller ends from {ends[0]:.2f} to {ends[1]:.2f} of the mean.",
         [
-            page.judged("error of the moment with 30 laminae", by="for ISO/TS 16281", unit="%"),
+            page.value(
+                "largest error of the moment with 30 laminae [%]",
+                100.0 * error,
+                at_most=100.0 * ENOUGH,
+                by="for ISO/TS 16281",
+            ),
             page.judged(
                 "order of convergence where no roller lifts off along a part",
                 "order of convergence, fully loaded rollers",
                 "midpoint rule",
             ),
             page.value(
-                "end over mean load, profiled",
+                "load at the roller's end over the mean, profiled",
                 crowned[2][end],
                 beside=crowned[0][end],
                 by="straight",
@@ -110,6 +116,10 @@ def answer(page: Page, error: float, crowned: list[Record]) -> None:
             ),
         ],
         HERO,
+        [
+            f"The profile {rises} the largest pressure on the inner race from {pressures[0]:.0f} "
+            f"to {pressures[1]:.0f} MPa."
+        ],
     )
 
 

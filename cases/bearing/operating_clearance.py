@@ -30,7 +30,7 @@ from fe_drivetrain.bearing.tolerances import (
 )
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.bearing.fitted_rings import raceway_growth
-from fe_drivetrain.report.number_text import certain_value, formatted
+from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 STEEL = RingMaterial(206e9, 0.3, 7850.0, 12.5e-6)
@@ -236,23 +236,29 @@ def answer(page: Page, rungs: list[Rung], band: OperatingClearance, worst: float
     """State what thick cylinders are worth, and what they leave out."""
     of, exact = {one.name: one for one in rungs}, rungs[-1].clearance
     error, given = (1e6 * abs(of[name].clearance - exact) for name in (RINGS, "given clearance"))
-    rings, radial = page.value("error of thick cylinders [µm]", error), band.radial
+    rings, radial = page.value("error of thick-cylinder formulas [µm]", error), band.radial
     page.answer(
-        "How well is the operating clearance of a bearing known, and what does it cost?",
-        f"Thick cylinders miss rings in solids by {certain_value(rings)} in "
-        f"{formatted(1e6 * of[RINGS].seconds, 2)}\u00a0µs; the clearance before mounting misses by "
-        f"{formatted(given, 2)}\u00a0µm.",
+        "Which formula gives the operating clearance of a bearing, and how accurately?",
+        f"Formulas of thick cylinders give the operating clearance within {certain_value(rings)} "
+        "of finite elements; the clearance before mounting errs by "
+        f"{value_text(given, 'µm')}.",
         [
             rings,
             page.value("error of the clearance before mounting [µm]", given),
+            page.value("time of thick-cylinder formulas [µs]", 1e6 * of[RINGS].seconds),
             page.value("operating clearance with mean tolerances [µm]", 1e6 * radial.mean),
-            page.value("its band, from least to most [µm]", 1e6 * (radial.most - radial.least)),
-            page.value("probable interference against a maker's [µm]", worst, at_most=1.0),
+            page.value("its whole range by tolerances [µm]", 1e6 * (radial.most - radial.least)),
+            page.value(
+                "largest difference of probable interference from a maker's table [µm]",
+                worst,
+                at_most=1.0,
+            ),
         ],
         hero=CHART,
         cautions=[
-            "Flanges of rings, out-of-round seats and temperatures that vary in a part are in no "
-            "model here; tolerances are far wider than what models differ by."
+            "Tolerances of the parts move the clearance far more than thick-cylinder formulas err.",
+            "No model here has flanges of rings, seats out of round or temperatures that vary "
+            "within a part.",
         ],
     )
 

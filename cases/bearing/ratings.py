@@ -69,28 +69,34 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, fitted: Record, misfit: Record, largest: float) -> None:
     """State how well the assumed rollers fit printed ratings, and that 38 deg do not."""
     own, printed = "C, from its insides [kN]", "C, printed [kN]"
-    of, angle = fitted["bearing"], f"{fitted['contact angle [deg]']:.0f}\u00a0deg"
+    of, angle = fitted["bearing"], f"{fitted['contact angle [deg]']:.0f}°"
+    other = f"{misfit['contact angle [deg]']:.0f}°"
     figures = [
-        page.judged(f"{of}: C", f"bearing S at {angle}, C", "Table 4.1", "6710"),
-        page.judged(f"{of}: C0", f"bearing S at {angle}, C0", "Table 4.1", "16600"),
-        page.judged(f"{of}: Cu", f"bearing S at {angle}, C_u", "Table 4.1", "1100"),
+        page.judged(f"{of}: C", f"C of bearing S, contact angle {angle}", "Table 4.1", "6710"),
+        page.judged(f"{of}: C0", f"C0 of bearing S, contact angle {angle}", "Table 4.1", "16600"),
+        page.judged(f"{of}: Cu", f"C_u of bearing S, contact angle {angle}", "Table 4.1", "1100"),
         page.value(
-            "bearing S at 38\u00a0deg, C [kN]", misfit[own], beside=misfit[printed], by="Table 4.1"
+            f"C of bearing S, contact angle {other} [kN]",
+            misfit[own],
+            beside=misfit[printed],
+            by="Table 4.1",
         ),
-        page.judged("masta_single: C", "tapered bearing of 26 MW, C", "MASTA"),
-        page.judged("masta_single: Cu", "tapered bearing of 26 MW, C_u", "MASTA"),
+        page.judged("masta_single: C", "C of the tapered bearing of 26 MW", "MASTA"),
+        page.judged("masta_single: Cu", "C_u of the tapered bearing of 26 MW", "MASTA"),
     ]
-    fit = "fit" if largest <= FITS else "do not fit"
+    fit = "fits" if largest <= FITS else "does not fit"
     hero = "Ratings from rollers: differences from printed ones, over what is allowed"
     page.answer(
-        "Do the rollers assumed inside bearings fit their printed load ratings?",
-        f"Rollers assumed in bearing S {fit} its ratings to {percent_text(largest)} at {angle}; at "
-        f"38\u00a0deg C would be {value_text(misfit[own], 'kN')}, not {misfit[printed]:.0f}.",
+        "Do the rollers that are assumed inside bearings give their printed load ratings?",
+        f"With a contact angle of {angle} bearing S {fit} its ratings within "
+        f"{percent_text(largest)} ({percent_text(FITS)} allowed), but stiffness needs {other}, "
+        f"where C is {value_text(misfit[own], 'kN')}, not {value_text(misfit[printed], 'kN')}.",
         figures,
         hero,
         [
-            "38 deg is the angle that gives the thesis's tilting stiffness face to face: a fit, no "
-            "insight into the bearing. The thesis prints no contact angle."
+            f"The two angles contradict each other: {angle} gives the printed ratings, {other} "
+            "roughly the thesis's tilting stiffness, rows face to face. It prints no angle.",
+            f"The rollers were sized to fit the ratings at {angle}: this is no independent check.",
         ],
     )
     page.section("Differences from printed ratings")

@@ -29,6 +29,7 @@ from fe_drivetrain.cases.references.thesis_beam import (
 )
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import bars, density_chart, mark_events, rolling_elements, trace
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.beam import torsional_spring_model
 from fe_drivetrain.turbine_loads.hub_loads import (
@@ -172,34 +173,35 @@ def answer(page: Page, ranges: dict[str, float], zones: tuple[float, float]) -> 
     of_mean = abs(ranges[HOUSED] - ranges[CONSTANT]) < abs(ranges[HOUSED] - ranges[ALONE])
     of_zones = opposite > 50.0
     cause = (
-        "contrary to the thesis, a rigid housing, not varying stiffness, narrows"
+        "a rigid housing narrows the force range, not varying stiffness as the thesis says"
         if of_mean
-        else "as in the thesis, varying stiffness narrows"
+        else "varying stiffness narrows the force range, as the thesis says"
     )
-    verdict = f"Rows carry on opposite sides in at least {opposite:.0f}\u00a0% of steps; {cause} "
-    verdict += "the force range."
+    verdict = f"Rows carry on opposite sides in at least {value_text(opposite, '%')} of steps; "
+    verdict += f"{cause}."
     page.answer(
-        "What do the rollers of a main bearing feel while its moment runs in loops?",
+        "How are the rollers of a main bearing loaded while its moment varies in loops?",
         verdict,
         [
             page.value(
-                "load zones of the rows opposite, least of four wind files [%]",
+                "steps with load zones of the rows opposite, lowest of four wind files [%]",
                 opposite,
                 at_least=50.0,
                 by="thesis: most of the time",
             ),
-            page.value("correlation of the peak roller with the moment, least", follows),
+            page.value("correlation of the peak roller load with the moment, lowest", follows),
             page.judged(
                 "range of the radial force at 24 m/s, rollers alone",
-                "range of force, rollers alone",
+                "force range at 24 m/s, rigid housing",
             ),
-            page.value("range of force, rollers and housing [kN]", ranges[HOUSED]),
-            page.value("range of force, constant 145 MN m/rad [kN]", ranges[CONSTANT]),
+            page.value("force range at 24 m/s, flexible housing [kN]", ranges[HOUSED]),
+            page.value("force range at 24 m/s, constant 145 MN m/rad [kN]", ranges[CONSTANT]),
         ],
         ZONES,
         [
-            "The range of force is smaller on rollers alone since they are ten times as stiff as "
-            "the housing, not since they vary; the thesis prints under 200 kN, against 800 kN."
+            "In a rigid housing the force range is smaller because the rollers are ten times as "
+            "stiff as the housing, not because their stiffness varies; the thesis prints less than "
+            "200 kN, against 800 kN."
         ],
         claim="holds" if of_zones and not of_mean else "holds in part",
     )

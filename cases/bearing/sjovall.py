@@ -167,26 +167,36 @@ def answer(page: Page, rows: list[Record], apart: float, swept: list[Record]) ->
     row = "peak roller times Z cos(alpha) over the row's force"
     peaks = [record["peak roller [kN]"] for record in (swept[0], swept[-1])]
     figures = [
-        page.judged(f"Houpert 1.1: {row}", "peak factor, exponent 1.1", "Sjovall", "4.0766"),
-        page.judged(f"ISO 10/9: {row}", "peak factor, exponent 10/9", "Sjovall", "4.0850"),
-        page.judged(f"Hertz 3/2: {row}", "peak factor, exponent 3/2", "Sjovall", "4.3701"),
-        page.judged("axial force: each roller of one row", by="closed form"),
-        page.judged("moment of a tilt of 1 mrad, returned", "tilt under its moment", "Sjovall"),
+        page.judged(f"Houpert 1.1: {row}", "peak load factor, exponent 1.1", "Sjovall", "4.0766"),
+        page.judged(f"ISO 10/9: {row}", "peak load factor, exponent 10/9", "Sjovall", "4.0850"),
+        page.judged(f"Hertz 3/2: {row}", "peak load factor, exponent 3/2", "Sjovall", "4.3701"),
+        page.judged(
+            "axial force: each roller of one row", "load of each roller, axial force", "closed form"
+        ),
+        page.judged(
+            "moment of a tilt of 1 mrad, returned",
+            "tilt under the moment of a tilt of 1 mrad",
+            "Sjovall",
+        ),
         page.value(
-            "peak of a planet bearing, clearance of 0.2 mm [kN]",
+            "peak roller load of a planet bearing, clearance of 0.2 mm [kN]",
             peaks[1],
             beside=peaks[0],
             by="without clearance",
         ),
     ]
-    carry = "carry" if all(check.passed for check in page.checks) else "do not carry"
+    carry = "give" if all(check.passed for check in page.checks) else "do not give"
     worst = max([apart, *(abs(f.value / f.limit - 1.0) for f in figures[:3] if f.limit)])
     page.answer(
-        "Do discrete rollers carry the peak load of Sjovall's integrals?",
-        f"Discrete rollers {carry} Sjovall's peak, {rows[0]['peak factor']:.4f} times F / (Z cos "
-        f"alpha) for exponent 1.1; the largest difference is {percent_text(worst)}.",
+        "Does a sum over discrete rollers give the peak load of Sjovall's integrals?",
+        f"Discrete rollers {carry} Sjovall's peak load factor, {rows[0]['peak factor']:.4f} for a "
+        f"contact exponent of 1.1; the largest difference is {percent_text(worst)}.",
         figures,
         HERO,
+        [
+            "The peak load factor multiplies the row's radial force over the number of its rollers "
+            "and the cosine of the contact angle."
+        ],
     )
     return figures[:5]
 

@@ -110,9 +110,9 @@ def of_own(run: Run, page: Page, own: OwnBearing) -> None:
     )
     page.answer(
         f"Which constant tilting stiffness fits {bearing_in_words(place.name)} best?",
-        f"The best fit is {value_text(fit, 'MN m/rad')}, tilted the other way "
-        f"{value_text(other, 'MN m/rad')}; rollers have up to {value_text(offset, 'kN m')} without "
-        "tilt, which no constant has.",
+        f"The best fit is {value_text(fit, 'MN m/rad')}, for tilt in the other direction "
+        f"{value_text(other, 'MN m/rad')}; without tilt the rollers carry up to "
+        f"{value_text(offset, 'kN m')}, which no constant gives.",
         [
             page.value("best fit [MN m/rad]", fit),
             page.value("best fit, tilted the other way [MN m/rad]", other),
@@ -132,27 +132,34 @@ def answer(page: Page, fits: list[Record]) -> None:
     slopes = [row["best fit [MN m/rad]"] for row in fits]
     page.found("slope of the best straight line [MN m/rad]", slopes[0])
     printed = BEST_FIT / 1e6
-    names = ("38 deg, face to face", "20 deg, face to face", "20 deg, back to back")
+    names = ("38°, face to face", "20°, face to face", "20°, back to back")
     page.answer(
         "Which constant tilting stiffness fits a double-row tapered bearing best?",
-        f"The best fit is {slopes[0]:.0f}\u00a0MN\u00a0m/rad at 38\u00a0deg face to face, "
-        f"{slopes[1]:.0f} to {max(slopes[1:]):.0f} at 20\u00a0deg; the thesis's {printed:.0f} "
-        "needs an angle it does not print.",
+        f"The best fit is {value_text(min(slopes))} to {value_text(max(slopes), 'MN m/rad')}, "
+        "depending on contact angle and arrangement; the thesis's "
+        f"{value_text(printed)} cannot be checked, since it prints no angle.",
         [
             *(
-                page.value(f"best fit, {name} [MN m/rad]", slope, beside=printed, by="thesis")
+                page.value(
+                    f"best fit, contact angle {name} [MN m/rad]", slope, beside=printed, by="thesis"
+                )
                 for name, slope in zip(names, slopes, strict=True)
             ),
             page.value(
-                "38 deg, with the housing in series [MN m/rad]",
+                "contact angle 38°, with the housing in series [MN m/rad]",
                 fits[0]["with the housing in series [MN m/rad]"],
             ),
-            page.judged("scenario 1: moment at a tilt of 0.2 mrad", "", "Sjovall"),
+            page.judged(
+                "scenario 1: moment at a tilt of 0.2 mrad",
+                "moment at a tilt of 0.2 mrad, ring centred",
+                "Sjovall",
+            ),
         ],
         HERO,
         [
-            "No constant has what the scenarios have: a moment without tilt, of up to "
-            f"{fits[0]['largest moment without tilt [kN m]']:.0f} kN m."
+            "Displaced along the axis or radially, the bearing has a moment of up to "
+            f"{fits[0]['largest moment without tilt [kN m]']:.0f} kN m without tilt: no constant "
+            "stiffness has that."
         ],
     )
 

@@ -116,21 +116,22 @@ def answer(page: Page, free: dict[str, Torsional], tabled: float, lss: Record) -
         for n in (2, 5, 11)
     }
     holds = abs(tabled / DAMPING_RATIO - 1) < MESH_RATIO
+    cause = ", because second moments of area were taken for inertias"
     page.answer(
-        "How strongly do the tabled dampers damp the drivetrain's swing?",
+        "How strongly do the tabled dampers damp the drivetrain's first torsional mode?",
         f"The thesis's {asked:g}\u00a0% of critical damping "
         f"{'holds' if holds else 'does not hold'}: its tabled shaft dampers give "
-        f"{value_text(100 * tabled, '%')}; computed from inertias, not from areas, they would.",
+        f"{value_text(100 * tabled, '%')}{'' if holds else cause}.",
         [
             page.value(
-                "damping ratio of the swing, dampers as tabled [%]",
+                "damping ratio of the first mode, dampers as tabled [%]",
                 100 * tabled,
                 beside=asked,
                 by="text of the thesis",
             ),
             *(
                 page.value(
-                    f"the same, dampers as meant, {name} [%]", ratio, beside=asked, by="text"
+                    f"the same, dampers from inertias, {name} [%]", ratio, beside=asked, by="text"
                 )
                 for name, ratio in ratios.items()
             ),

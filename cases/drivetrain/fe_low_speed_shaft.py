@@ -182,10 +182,11 @@ def answer(page: Page, K: Stiffness, rows: list[Record], needed: list[Record]) -
     enough = (K.value - K.band) / TABLED <= max(fixed_needs, free_needs)
     measured = published.MEASURED["free"]
     page.answer(
-        "What does a finite-element low-speed shaft change of the drivetrain's frequencies?",
-        f"The shaft is {percent_text(1 - K.value / TABLED)} softer than J G / L, which lowers "
-        f"{free[BEFORE]:.2f}\u00a0Hz by {percent_text(free[CHANGE] / 100)}: that "
-        f"{'explains' if enough else 'does not explain'} the measured {measured:g}\u00a0Hz.",
+        "How does a finite-element low-speed shaft change the frequencies of the drivetrain?",
+        f"By finite elements the shaft is {percent_text(1 - K.value / TABLED)} softer than tabled: "
+        f"that lowers the frequency of {free[BEFORE]:.2f}\u00a0Hz by "
+        f"{percent_text(free[CHANGE] / 100)}, {'enough' if enough else 'too little'} to explain "
+        f"the measured {measured:g}\u00a0Hz.",
         [
             page.value(
                 "stiffness of the low-speed shaft [MN m/rad]",
@@ -206,14 +207,14 @@ def answer(page: Page, K: Stiffness, rows: list[Record], needed: list[Record]) -
             ),
             *(
                 page.value(
-                    f"stiffness for the measured one, generator {row['generator']}, over tabled",
+                    f"stiffness needed for the measured one, over tabled, {row['generator']}",
                     row["11 masses"],
                 )
                 for row in needed
             ),
         ],
         OVER_STIFFNESS.format(free["mode"], "free"),
-        ["The thesis has no drawing of the shaft: flange, steps and fillets are chosen."],
+        ["The thesis has no drawing of the shaft: flange, steps and fillets are assumed."],
     )
     page.say(
         "Flange, step and fillets are such that the sections add up to Table 4.2's stiffness: "

@@ -76,16 +76,20 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, first: list[float], whole: float, meshes: float, hero: str) -> None:
     """State what the drivetrain swings at first [Hz], its stiffness, and the meshes' share."""
     page.answer(
-        "At which torsional frequency does the drivetrain swing first?",
-        f"With every gear a mass the drivetrain first swings at {value_text(first[2], 'Hz')}, as "
-        f"two masses at {value_text(first[0], 'Hz')}; meshes make {percent_text(meshes)} of its "
-        "compliance.",
+        "What is the first torsional frequency of the drivetrain?",
+        f"The first torsional frequency is {value_text(first[2], 'Hz')} with every gear as a mass "
+        f"and {value_text(first[0], 'Hz')} with two masses; meshes give {percent_text(meshes)} of "
+        "the compliance.",
         [
-            page.value("first frequency, every gear a mass [Hz]", first[2]),
+            page.value("first frequency, every gear as a mass [Hz]", first[2]),
             page.value("first frequency, a mass for each stage [Hz]", first[1]),
             page.value("first frequency, two masses [Hz]", first[0]),
             page.value("torsional stiffness on the rotor's side [MN m/rad]", whole / 1e6),
             page.value("share of gear meshes in the compliance [%]", 100 * meshes),
         ],
         hero,
+        [
+            "Frequencies are those with the generator free to turn; the mode shapes say how it is "
+            "held."
+        ],
     )

@@ -11,7 +11,7 @@ from fe_drivetrain.cases.references import published_drivetrains as published
 from fe_drivetrain.comparison import as_printed
 from fe_drivetrain.dynamics.torsion import GearTable, gear_masses, natural_modes
 from fe_drivetrain.report import chart, mark_events, trace
-from fe_drivetrain.report.number_text import percent_text
+from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 VOLTS, HERTZ = 690.0, 60.0
@@ -188,27 +188,28 @@ def answer(
     a, c = GENERATORS[0], GENERATORS[2]
     own = a.per_minute * a.poles / 120.0
     fits = abs(own - HERTZ) < 1.0
+    apart = "" if fits else f", not {HERTZ:g}\u00a0Hz"
     implied = 0.5 * d.poles * d.torque / PRINTED
     page.answer(
-        "What do the printed data of the 690 V generators determine?",
-        f"They leave D's spring open, {springs[soft] / 1e3:.1f} to {springs[stiff] / 1e3:.0f} "
-        f"kN\u00a0m/rad, and its first mode, {modes[soft][0]:.2f} to "
-        f"{modes[stiff][0]:.2f}\u00a0Hz; A's runs at {own:.1f}\u00a0Hz"
-        f"{'' if fits else f', not at {HERTZ:g}'}.",
+        "Which grid spring and which frequency follow from printed data of the 690 V generators?",
+        f"Printed data allow drivetrain D a grid spring of {value_text(springs[soft] / 1e3)} to "
+        f"{value_text(springs[stiff] / 1e3, 'kN m/rad')}, first mode "
+        f"{modes[soft][0]:.2f} to {modes[stiff][0]:.2f}\u00a0Hz; generator A runs at "
+        f"{value_text(own, 'Hz')}{apart}.",
         [
             page.value(
-                "D's spring, leakage and line [N m/rad]",
-                springs[stiff],
-                beside=PRINTED,
+                "grid spring of D, from leakage and line [kN m/rad]",
+                springs[stiff] / 1e3,
+                beside=PRINTED / 1e3,
                 by="thesis",
             ),
             page.value(
-                "D's spring, with the mutual inductance [N m/rad]",
-                springs[soft],
-                beside=PRINTED,
+                "grid spring of D, with the mutual inductance too [kN m/rad]",
+                springs[soft] / 1e3,
+                beside=PRINTED / 1e3,
                 by="thesis",
             ),
-            page.value("reactance that the printed spring asks for", implied),
+            page.value("reactance that the printed spring needs, over rated impedance", implied),
             page.judged(
                 "drivetrain D: first mode with the printed spring",
                 "first mode of D with the printed spring",
@@ -222,8 +223,8 @@ def answer(
         ],
         MODES,
         [
-            "Resistances, excitation, converters and their controls are not printed: no torque by "
-            "time follows from the table."
+            "Resistances, excitation, converters and their controls are not printed: the torque "
+            "over time cannot be computed from the table."
         ],
         claim="holds" if fits else "holds in part",
     )

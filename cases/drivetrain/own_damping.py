@@ -167,7 +167,7 @@ def answer(page: Page, rows: list[Record], by_ratio: bool) -> None:
         for r in modes
         if float(r["damping ratio"]) > 0.0
     )
-    other = f"least has that of {value_text(float(least['damped [Hz]']), 'Hz')}"
+    other = f"the mode of {value_text(float(least['damped [Hz]']), 'Hz')} is damped least"
     page.answer(
         "How strongly are the torsional modes of the drivetrain damped?",
         f"The first mode, {value_text(float(modes[0]['damped [Hz]']), 'Hz')}, has "
@@ -179,13 +179,12 @@ def answer(page: Page, rows: list[Record], by_ratio: bool) -> None:
                 for name, ratio in first.items()
             ),
             page.value("least damping ratio [%]", 100.0 * float(least["damping ratio"])),
-            page.value("its frequency [Hz]", float(least["damped [Hz]"])),
+            page.value("frequency of the least damped mode [Hz]", float(least["damped [Hz]"])),
             page.value("largest difference of the first order [%]", 100.0 * apart),
         ],
         CURVES,
         [
             *([OF_EACH] if by_ratio else []),
-            "Dampers are those of the file; none of bearings, oil and the generator's law is "
-            "added.",
+            "Dampers are those of the file; bearings, oil and the generator's control add none.",
         ],
     )

@@ -82,13 +82,14 @@ def answer(page: Page, sections: float, K: Stiffness, rows: list[Record]) -> Non
     before = value_text(float(finest[BEFORE]), "Hz")
     band = K.band / sections
     page.answer(
-        "What does a finite-element main shaft change of the drivetrain's frequencies?",
-        f"The shaft is {percent_text(abs(change))} {'softer' if change < 0.0 else 'stiffer'} than "
-        f"the sum of its sections, which {'lowers' if moved < 0.0 else 'raises'} {before} by "
+        "How does a finite-element main shaft change the frequencies of the drivetrain?",
+        f"By finite elements the shaft is {percent_text(abs(change))} "
+        f"{'softer' if change < 0.0 else 'stiffer'} than the sum of its sections, which "
+        f"{'lowers' if moved < 0.0 else 'raises'} the first frequency, {before}, by "
         f"{percent_text(abs(moved))}."
         if abs(change) > band
-        else f"Hardly anything: within {percent_text(band + abs(change))} the shaft is as stiff "
-        f"as the sum of its sections, and {before} stays.",
+        else f"By finite elements the shaft is as stiff as the sum of its sections within "
+        f"{percent_text(band + abs(change))}, and the first frequency stays at {before}.",
         [
             page.value(
                 "stiffness of the main shaft [MN m/rad]",

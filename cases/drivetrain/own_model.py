@@ -21,7 +21,7 @@ from fe_drivetrain.dynamics.torsion import (
     static_stiffness,
     two_masses,
 )
-from fe_drivetrain.report.number_text import value_text
+from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 GEARS = "a mass for each gear"
@@ -69,16 +69,18 @@ def answer(page: Page, model: str, first: dict[str, float], whole: float, meshes
     apart = 100 * (own / finest - 1)
     if model == GEARS:
         verdict = (
-            f"With a mass for each gear it first swings at {value_text(own, 'Hz')}; meshes make "
-            f"{100 * meshes:.2g}\u00a0% of its compliance."
+            f"With a mass for each gear the first torsional frequency is {value_text(own, 'Hz')}; "
+            f"meshes give {100 * meshes:.2g}\u00a0% of the compliance."
         )
     else:
         verdict = (
-            f"As {model} it first swings at {value_text(own, 'Hz')}, {apart:+.2g}\u00a0% from "
-            f"{value_text(finest, 'Hz')} with a mass for each gear."
+            f"As {model} the drivetrain has a first torsional frequency of "
+            f"{value_text(own, 'Hz')}, {percent_text(apart / 100)} "
+            f"{'above' if apart > 0.0 else 'below'} the {value_text(finest, 'Hz')} with a mass for "
+            "each gear."
         )
     page.answer(
-        f"At which torsional frequency does the drivetrain swing first, as {model}?",
+        f"What is the first torsional frequency of the drivetrain, as {model}?",
         verdict,
         [
             *(page.value(f"first frequency, {name} [Hz]", value) for name, value in first.items()),

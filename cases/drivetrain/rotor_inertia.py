@@ -123,14 +123,14 @@ def answer(page: Page, rotors: tuple[PublicRotor, ...], law: PowerLaw) -> None:
     lengths = [one.length for one in rotors]
     implied = [implied_length(published.table(name).rotor) for name, *_ in published.RATED.values()]
     page.answer(
-        "How good are the thesis's rules for a rotor's inertia and for torque by diameter?",
-        f"Eq 4.2 {'does not hold' if wrong else 'holds in part'}: it gives "
-        f"{percent_text(min(over) - 1.0)} to {percent_text(max(over) - 1.0)} more inertia than "
-        f"{len(rotors)} public rotors have; torque over D^3 spreads "
+        "How good are the thesis's rules for inertia of a rotor and for torque by its diameter?",
+        f"The thesis's inertia rule {'does not hold' if wrong else 'holds in part'}: it gives "
+        f"{percent_text(min(over) - 1.0)} to {percent_text(max(over) - 1.0)} more than "
+        f"{len(rotors)} public rotors have; torque over diameter cubed varies "
         f"{max(cube) / min(cube):.2f}-fold.",
         [
-            page.value("Eq 4.2 over the blades' inertia, least", min(over)),
-            page.value("Eq 4.2 over the blades' inertia, largest", max(over)),
+            page.value("excess of inertia by Eq 4.2, smallest [%]", 100.0 * (min(over) - 1.0)),
+            page.value("excess of inertia by Eq 4.2, largest [%]", 100.0 * (max(over) - 1.0)),
             page.value(
                 "J / (M L^2) of a public blade, largest",
                 max(coefficients(rotors)),
@@ -138,11 +138,11 @@ def answer(page: Page, rotors: tuple[PublicRotor, ...], law: PowerLaw) -> None:
                 by="Eq 4.2",
             ),
             page.value(
-                "exponent of the inertia over length", law.exponent, beside=4.13, by="thesis"
+                "exponent of inertia over blade length", law.exponent, beside=4.13, by="thesis"
             ),
-            page.value("scatter of a power law of public rotors [%]", 100.0 * law.scatter),
+            page.value("scatter of public rotors about a power law [%]", 100.0 * law.scatter),
             page.value(
-                "mean torque of B's record over its rated torque",
+                "mean torque of drivetrain B's record over its rated torque",
                 published.scaled_mean("B"),
                 beside=1.0,
                 by="rated",
@@ -152,7 +152,7 @@ def answer(page: Page, rotors: tuple[PublicRotor, ...], law: PowerLaw) -> None:
         [
             f"Public rotors have blades of {min(lengths):.0f} to {max(lengths):.0f} m, those of "
             f"the thesis {min(implied):.0f} to {max(implied):.0f} m by its formula.",
-            "Rated torque of two turbines is their power over efficiency and speed.",
+            "The rated torque of two turbines is computed from power, efficiency and speed.",
         ],
         claim="does not hold" if wrong else "holds in part",
     )

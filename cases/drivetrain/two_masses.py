@@ -142,16 +142,19 @@ def answer(page: Page, other: Restored, measured: list[Record]) -> None:
     needs = "shafts that it needs, over those of Table 4.2"
     same = abs(other.rotor / J[0] - 1) < SAME
     page.answer(
-        "At which frequencies does the NREL 750 kW drivetrain swing as two masses?",
-        f"Two masses swing at {certain_value(first)} (generator fixed) and "
-        f"{certain_value(second)} (free): Table 6.1 agrees, Table 6.2 "
-        f"{'does, too' if same else 'does not'}; measured were {fixed['measured [Hz]']:g} and "
-        f"{free['measured [Hz]']:g}\u00a0Hz.",
+        "Do frequencies of the NREL 750 kW drivetrain as two masses agree with Tables 6.1 and 6.2?",
+        f"Two masses give {certain_value(first)} (generator fixed) and {certain_value(second)} "
+        f"(free): Table 6.1 agrees, Table 6.2 {'does, too' if same else 'does not'}; the measured "
+        f"values are {fixed['measured [Hz]']:g} and {free['measured [Hz]']:g}\u00a0Hz.",
         [
             *figures,
-            page.value("shafts for the measured frequency, fixed, over tabled", fixed[needs]),
-            page.value("shafts for the measured frequency, free, over tabled", free[needs]),
-            page.value("rotor that Table 6.2 needs, over tabled", other.rotor / J[0]),
+            page.value(
+                "shaft stiffness that the measured one needs, over tabled, fixed", fixed[needs]
+            ),
+            page.value(
+                "shaft stiffness that the measured one needs, over tabled, free", free[needs]
+            ),
+            page.value("rotor inertia that Table 6.2 needs, over tabled", other.rotor / J[0]),
         ],
         DIFFERENCES,
         claim="holds" if same else "holds in part",

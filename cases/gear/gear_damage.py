@@ -216,7 +216,7 @@ def own_answer(page: Page, rows: list[Record]) -> None:
     others = max(float(row["other flank"]) for row in rows)
     page.answer(
         "Do the gears last 20 years?",
-        f"No: {what} has a damage of {damage:.3g}, failure after "
+        f"No: {what} reaches a damage of {damage:.3g} in {years:.0f}\u00a0years, so it fails after "
         f"{value_text(years / damage, 'years')}."
         if damage > 1.0
         else f"Yes: the largest damage in {years:.0f}\u00a0years is {damage:.2g}, of {what}.",
@@ -248,8 +248,9 @@ def answer(page: Page, rows: list[Record]) -> None:
     other, root = (max(float(r[key]) for r in rows) for key in ("other flank", "root"))
     damage, years = float(worst["flank"]), SITE.years
     if damage > 1.0:
-        verdict = f"The flank of the {worst['tooth']} does not last {years:.0f}\u00a0years: damage "
-        verdict += f"{damage:.3g}, failure after {value_text(years / damage, 'years')}."
+        verdict = f"The flank of the {worst['tooth']} does not last {years:.0f}\u00a0years: its "
+        verdict += f"damage reaches {damage:.3g} (1 is failure), so it fails after "
+        verdict += f"{value_text(years / damage, 'years')}."
     else:
         verdict = f"All teeth last {years:.0f}\u00a0years: the largest damage is {damage:.2g}, of "
         verdict += f"the flank of the {worst['tooth']}."
@@ -262,16 +263,24 @@ def answer(page: Page, rows: list[Record]) -> None:
             page.value(f"flank damage in 20 years, {worst['tooth']}", damage, at_most=1.0),
             page.value(f"life of the {worst['tooth']} [years]", years / damage, at_least=years),
             page.value(
-                f"flank damage, next: {second['tooth']}", float(second["flank"]), at_most=1.0
+                f"flank damage in 20 years, next worst: {second['tooth']}",
+                float(second["flank"]),
+                at_most=1.0,
             ),
-            page.value("largest root damage", root, at_most=1.0),
-            page.judged(f"{ring}: {lasting}", f"{ring}, damage at rated torque", "KISSsoft"),
-            page.judged(f"{sun}: {lasting}", f"{sun}, damage at rated torque", "KISSsoft"),
+            page.value("largest root damage in 20 years", root, at_most=1.0),
+            page.judged(
+                f"{ring}: {lasting}",
+                f"{ring}, flank damage of 20 years at rated torque",
+                "KISSsoft",
+            ),
+            page.judged(
+                f"{sun}: {lasting}", f"{sun}, flank damage of 20 years at rated torque", "KISSsoft"
+            ),
         ],
         hero=DAMAGES,
         cautions=[
-            f"At S_H = {SAFETY[0]} and S_F = {SAFETY[1]}; turbulence of the torque and times of "
-            "stops are assumed, and load factors are those of the KISSsoft reports.",
+            f"The damage includes safety factors S_H = {SAFETY[0]} and S_F = {SAFETY[1]}; torque "
+            "turbulence and the time of stops are assumed, load factors those of KISSsoft reports.",
             "The thesis weights fast shafts by the inverse of how often their teeth mesh, which "
             "does not hold: see the table of drivetrain C.",
         ],

@@ -4,7 +4,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.gear.printed_ratings import check_mesh
 from fe_drivetrain.cases.references.rated_gears import rated, rated_meshes
 from fe_drivetrain.report import gear_pair
-from fe_drivetrain.report.number_text import certain_value, value_text
+from fe_drivetrain.report.number_text import value_text, value_with_band
 from fe_drivetrain.report.suite import Page, Run
 
 SOURCE = "ISO/TR 6336-30:2017, example 1, as the public repository gfsReboucas/Drivetrain quotes it"
@@ -28,14 +28,15 @@ def answer(page: Page, of: str) -> None:
     ]
     largest = max(100.0 * abs(one.value / (one.limit or 1.0) - 1.0) for one in figures)
     page.answer(
-        "Does the program rate the flanks of example 1 as ISO/TR 6336-30 prints it?",
-        f"The flanks carry {certain_value(stress)} at a safety of {certain_value(safety)}, within "
-        f"{value_text(largest, '%')} of the printed rating.",
+        "Does the program rate the tooth flanks of example 1 as ISO/TR 6336-30 does?",
+        f"The contact stress is {value_with_band(stress)} and the safety "
+        f"{value_with_band(safety)}; all {len(figures)} values agree with the printed ones "
+        f"within {value_text(largest, '%')}.",
         figures,
         hero=HERO,
         cautions=[
-            "The example is quoted at second hand; K_v, K_Hbeta and K_Halpha are taken as "
-            "printed, and root stress cannot be compared."
+            "The example is quoted from a secondary source; K_v, K_Hbeta and K_Halpha are taken as "
+            "printed, and the root stress cannot be compared."
         ],
     )
     page.section("Beside the printed digits")

@@ -139,15 +139,15 @@ def own(run: Run, page: Page) -> None:
     least = min(rows, key=lambda row: float(row["contact ratio"]))
     page.answer(
         "How many pairs of teeth are in contact in the meshes, and for how long?",
-        f"{least['mesh']} has fewest: {float(least[MEASURED[0]]):.0f} pairs for "
-        f"{100.0 * float(least[MEASURED[2]]):.0f}\u00a0% of the time, else "
+        f"{least['mesh']} has fewest: {float(least[MEASURED[0]]):.0f} pairs are in contact for "
+        f"{100.0 * float(least[MEASURED[2]]):.0f}\u00a0% of the time, otherwise "
         f"{float(least[MEASURED[1]]):.0f}.",
         [
             page.value(f"contact ratio, {row['mesh']}", float(row["contact ratio"]))
             for row in rows[:6]
         ],
         hero=PAIRS,
-        cautions=["Series overshoot by 9 % of the jump next to each jump."],
+        cautions=["Next to each jump the Fourier series overshoots by 9 % of the jump."],
     )
 
 
@@ -156,20 +156,27 @@ def answer(page: Page, hero: str, plus: Record, minus: Record) -> None:
     ratio = float(plus["contact ratio"])
     expected = dict(zip(MEASURED[:3], (2.0, 1.0, ratio - 1.0), strict=True))
     right = all(abs(float(minus[key]) - value) < 5e-3 for key, value in expected.items())
-    levels = f"{float(minus[MEASURED[0]]):.1f} and {float(minus[MEASURED[1]]):.1f} pairs of teeth"
+    levels = f"{float(minus[MEASURED[0]]):.1f} and {float(minus[MEASURED[1]]):.1f} tooth pairs"
     page.answer(
-        "Do the Fourier coefficients of mesh stiffness that Park et al. print hold?",
+        "Are the Fourier coefficients of mesh stiffness that Park et al. print right?",
         f"The printed equations hold: {levels} in contact at a contact ratio of {ratio:g}."
         if right
-        else f"The printed sign does not hold: at contact ratio {ratio:g} it has {levels} in "
-        f"contact; a plus {float(plus[MEASURED[0]]):.0f} and {float(plus[MEASURED[1]]):.0f}.",
+        else f"The printed minus sign does not hold: at contact ratio {ratio:g} it gives {levels}; "
+        f"a plus sign gives {float(plus[MEASURED[0]]):.0f} and {float(plus[MEASURED[1]]):.0f}.",
         [
-            page.value(f"{key.partition(' [')[0]}, {sign}{unit}", row[key], beside=value, by="true")
-            for sign, row in (("as printed", minus), ("with a plus", plus))
+            page.value(
+                f"{key.partition(' [')[0]}, {sign}{unit}".replace("above", "at the upper level"),
+                row[key],
+                beside=value,
+                by="true",
+            )
+            for sign, row in (("as printed", minus), ("with a plus sign", plus))
             for key, value in expected.items()
             for unit in [" [pairs]" if key.endswith("[pairs]") else ""]
         ],
         hero=hero,
-        cautions=["Series overshoot by 9 % of the jump next to each jump, with either sign."],
+        cautions=[
+            "Next to each jump the Fourier series overshoots by 9 % of the jump, with either sign."
+        ],
         claim="holds" if right else "does not hold",
     )

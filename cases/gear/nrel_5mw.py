@@ -103,7 +103,7 @@ def own(run: Run, page: Page) -> None:
     softest = min(stiffness, key=lambda name: stiffness[name])
     page.answer(
         "How stiff are the meshes of the gearbox by their teeth?",
-        f"By ISO 6336-1 {softest} is the softest mesh, of "
+        f"By ISO 6336-1, {softest} is the softest mesh, with "
         f"{value_text(stiffness[softest], 'GN/m')} along its line of action.",
         [
             page.value(f"mesh stiffness, {name} [GN/m]", value)
@@ -149,24 +149,27 @@ def answer(page: Page, names: list[str]) -> None:
     ]
     worst = 100.0 * largest["stiffness"]
     page.answer(
-        "Are geometry and mesh stiffness of the NREL 5 MW gearbox those of the printed reports?",
-        f"All {len(apart)} printed numbers of the five meshes come out: stiffness differs by "
-        f"{worst:.1g} % at most, which is rounding."
+        "Do geometry and mesh stiffness of the NREL 5 MW gearbox agree with the printed reports?",
+        f"All {len(apart)} printed numbers of the five meshes are met: stiffness differs by "
+        f"{worst:.2g}\u00a0% at most, which rounding of the printed digits explains."
         if all(check.passed for check in apart.values())
-        else f"Not all of {len(apart)} printed numbers come out: stiffness differs by up to "
-        f"{worst:.2g} %.",
+        else f"Not all of {len(apart)} printed numbers are met: stiffness differs by up to "
+        f"{worst:.2g}\u00a0%.",
         [
-            page.value("largest difference of a stiffness [%]", worst, at_most=0.06, by="digits"),
+            page.value("largest difference of a stiffness [%]", worst, at_most=0.06, by="rounding"),
             page.value(
-                "largest difference of a contact ratio", largest["ratio"], at_most=5e-4, by="digits"
+                "largest difference of a contact ratio",
+                largest["ratio"],
+                at_most=5e-4,
+                by="rounding",
             ),
             page.value("largest difference of a force [%]", 100.0 * largest["force"]),
             *(mesh[names.index(name)] for name in ("sun 1", "ring 1", "stage 3")),
         ],
         hero=HERO,
         cautions=[
-            "The factor of the gear blank is taken as printed, with three digits, and limits "
-            "how well stiffness can agree."
+            "The factor of the gear blank is taken as printed, with three digits: this limits how "
+            "well stiffness can agree."
         ],
     )
     page.errors(HERO, [*mesh, *forces])

@@ -41,8 +41,8 @@ def answer(
     sun = value_text(stiffness["sun"] / 1e9, "GN/m")
     page.answer(
         "How stiff are the gear meshes of the NREL 750 kW gearbox?",
-        f"Sun and planet have a mesh stiffness of {sun} by ISO 6336-1; values that others took are "
-        f"{min(over_iso):.2g} to {max(over_iso):.2g} times that of the standard.",
+        f"The sun-planet mesh has a stiffness of {sun} by ISO 6336-1; across all meshes, other "
+        f"authors took {min(over_iso):.2g} to {max(over_iso):.2g} times the standard's value.",
         [
             *(
                 page.value(
@@ -68,9 +68,10 @@ def answer(
         ],
         hero=HERO,
         cautions=[
-            "Tips are assumed at a clearance of 0.4 modules: drawings give root circles alone.",
-            "The value of Link et al. 2013 is left out of the comparison: its unit cannot be "
-            "right.",
+            "Tip circles are assumed, with a clearance of 0.4 modules: drawings give root circles "
+            "only.",
+            "The value of Link et al. 2013 is left out of the comparison, because its unit cannot "
+            "be right.",
         ],
     )
     shown = {f"{row['source']}, {row['mesh']}": float(row["over ISO 6336-1"]) for row in others}

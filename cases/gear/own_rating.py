@@ -91,9 +91,9 @@ def answer(page: Page, own: OwnMeshes, flanks: list[Record]) -> None:
     has = f"{what} safety {float(worst[key]):.3g} where {float(worst[f'{key} asked']):g} is asked"
     page.answer(
         "Are the gears safe by ISO 6336 at rated torque over twenty years?",
-        f"All gears are: least to spare has the {worst['flank']}, with {has}."
+        f"All gears are safe: the {worst['flank']} has least to spare, with a {has}."
         if least >= 1.0
-        else f"Not all are: the {worst['flank']} has {has}.",
+        else f"Not all gears are safe: the {worst['flank']} has a {has}.",
         [
             page.value(
                 f"safety of flanks, {flank['flank']}",

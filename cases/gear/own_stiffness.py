@@ -95,16 +95,16 @@ def answer(page: Page, rows: list[Record]) -> None:
         apart = {str(r["mesh"]): float(r["file over ISO 6336-1"]) for r in stated}
         most = max(apart, key=lambda name: abs(apart[name] - 1.0))
         verdict = (
-            f"The file's stiffness of {most} is {apart[most]:.2g} times that of ISO 6336-1, which "
-            "is furthest from it."
+            f"The file's stiffness of {most} is {apart[most]:.2g} times that of ISO 6336-1, the "
+            "largest difference of all meshes."
             if abs(apart[most] - 1.0) > NEARLY_EQUAL
             else f"The file's stiffness is that of ISO 6336-1 within {percent_text(NEARLY_EQUAL)}, "
             "of all meshes where it is stated."
         )
     else:
         verdict = (
-            f"The file leaves them to ISO 6336-1: {softest['mesh']} is softest, "
-            f"{value_text(float(softest[BY_ISO]), 'GN/m')}; the formula has "
+            f"The file leaves them to ISO 6336-1: {softest['mesh']} is softest, with "
+            f"{value_text(float(softest[BY_ISO]), 'GN/m')}; Eq 5.2 to 5.4 give "
             f"{min(formula):.2g} to {max(formula):.2g} times as much."
         )
     page.answer(

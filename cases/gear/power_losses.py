@@ -11,7 +11,7 @@ from fe_drivetrain.comparison import as_printed
 from fe_drivetrain.gear import Gear, Pair
 from fe_drivetrain.gear.losses import film_friction, mean_friction, tooth_loss_factor
 from fe_drivetrain.report import trace
-from fe_drivetrain.report.number_text import formatted
+from fe_drivetrain.report.number_text import formatted, value_text
 from fe_drivetrain.report.suite import ChosenDrivetrain, Page, Record, Run
 from fe_drivetrain.studies.gear_loads import GearLoading, loads_of
 from fe_drivetrain.studies.gear_losses import (
@@ -189,29 +189,32 @@ def answer(page: Page, chosen: ChosenDrivetrain, losses: DrivetrainLosses) -> No
     constant = next(one for one in losses.levels if one.name == CONSTANT)
     teeth = sum(float(own.heat[k, 0]) for k, n in enumerate(own.names) if n in losses.meshes)
     page.found("efficiency at rated torque [%]", float(rated), float(band[0]))
+    lost = heat / 1e3
+    spread = lost * float(band[0]) / (100.0 - float(rated))
     page.answer(
-        "How much power does the drivetrain lose, and what arrives at the generator?",
-        f"{formatted(heat / 1e3, 3)}\u00a0kW at rated torque: the drivetrain has "
-        f"{formatted(float(rated), 3)}\u00a0%, and {formatted(float(low), 3)}\u00a0% at a fifth of "
-        "the torque.",
+        "How much power does the drivetrain lose, and how efficient is it?",
+        f"At rated torque the drivetrain loses {value_text(lost, 'kW', spread)} and has an "
+        f"efficiency of {formatted(float(rated), 3)}\u00a0%; at a fifth of the torque it has "
+        f"{formatted(float(low), 3)}\u00a0%.",
         [
+            page.value("power lost at rated torque [kW]", lost, spread),
             page.judged("efficiency at rated torque"),
             page.value("efficiency at a fifth of the rated torque [%]", float(low)),
-            page.value("share of teeth in the heat at rated torque [%]", 100.0 * teeth / heat),
+            page.value("share of gear teeth in this loss [%]", 100.0 * teeth / heat),
             page.value("torque at the generator [kN m]", float(own.generator_torque[0]) / 1e3),
             page.value(
-                "error of a constant efficiency in the heat over all torques [%]",
+                "error of the loss at all torques if efficiency is taken as constant [%]",
                 100.0 * abs(constant.difference),
             ),
         ],
         HERO,
         [
-            "Churned oil, pumps and the generator are not in it; of parts without catalogue entry "
-            "or teeth nothing is counted: "
+            "No efficiency of the machine was measured: the uncertainty is the difference between "
+            "models of losses.",
+            "Oil churning, pumps and the generator are not included, nor parts without catalogue "
+            "entry or teeth: "
             + (", ".join(losses.left_out) if losses.left_out else "none here")
             + ".",
-            "No measured efficiency of the machine stands beside it: the band is the difference of "
-            "models.",
         ],
     )
     if chosen.own:

@@ -191,8 +191,8 @@ def own_answer(page: Page, rows: dict[str, list[Record]]) -> None:
     highest = max(factors, key=lambda name: factors[name])
     page.answer(
         "How many slices of the face width does the face load factor K_Hbeta need?",
-        f"35 slices give K_Hbeta of all {len(rows)} meshes to "
-        f"{percent_text((error + band) / 100.0)}; ISO's formula misses it by up to "
+        f"35 slices give K_Hbeta of all {len(rows)} meshes within "
+        f"{percent_text((error + band) / 100.0)}; ISO's formula errs by up to "
         f"{percent_text(formula[0] / 100.0)}.",
         [
             page.value(
@@ -209,10 +209,10 @@ def own_answer(page: Page, rows: dict[str, list[Record]]) -> None:
         ],
         hero=f"{highest}: {HERO[0].lower()}{HERO[1:]}",
         cautions=[
-            "Misalignments are assumed, not those that the drivetrain has: the command gears finds "
-            "these from shafts and bearings.",
-            "Slices that do not hold each other are judged by finer ones of the same kind, not by "
-            "finite elements.",
+            "Misalignments are assumed, not those that the drivetrain has: `fe-drivetrain gears` "
+            "finds these from shafts and bearings.",
+            "Slices are not coupled to each other, and the reference is finer slices of the same "
+            "kind, not finite elements.",
         ],
     )
 
@@ -286,23 +286,23 @@ def answer(
     formula, spring = worst["ISO 6336-1, c_gamma_beta"], worst["one spring"]
     page.answer(
         "How many slices of the face width does the face load factor K_Hbeta need?",
-        f"35 slices give K_Hbeta to {percent_text((error + band) / 100.0)}; ISO's formula misses "
-        f"it by up to {percent_text(formula[0] / 100.0)}, one spring by "
+        f"35 slices give K_Hbeta within {percent_text((error + band) / 100.0)}; ISO's formula errs "
+        f"by up to {percent_text(formula[0] / 100.0)}, one spring for the whole face by "
         f"{percent_text(spring[0] / 100.0)}.",
         [
             page.value("error with 35 slices [%]", error, band, at_most=MOST, by=of),
             page.value("error with 5 slices [%]", *worst["5 slices"]),
             page.value("error of ISO's formula [%]", *formula),
-            page.value("the same, all of the mesh stiffness [%]", *worst[WHOLE]),
+            page.value("error of ISO's formula with the whole mesh stiffness [%]", *worst[WHOLE]),
             page.value("error of one spring [%]", *spring),
             page.value(f"K_Hbeta at {gap:g} µm of misalignment", float(at["K_Hbeta"])),
         ],
         hero=HERO,
         cautions=[
-            "Slices that do not hold each other are judged by finer ones of the same kind, not by "
-            "finite elements.",
-            f"Bands are what {few} phases of a period in place of {many} change; with "
-            "other numbers of phases K_Hbeta of any number of slices is up to one percent higher.",
+            "Slices are not coupled to each other, and the reference is finer slices of the same "
+            "kind, not finite elements.",
+            f"Uncertainties are what {few} positions per mesh period instead of {many} change; "
+            "with other numbers of positions all values of K_Hbeta are up to one percent higher.",
         ],
     )
 

@@ -220,7 +220,9 @@ def own_answer(page: Page, rows: list[Record], torque: float) -> None:
             page.value("rated torque of the rotor [kN m]", torque / 1e3),
         ],
         hero=HERO,
-        cautions=["One pair of teeth carries the whole load over the whole face: no load factors."],
+        cautions=[
+            "One pair of teeth carries the whole load, evenly over the face: no load factors."
+        ],
     )
 
 
@@ -237,13 +239,13 @@ def answer(page: Page, rows: list[Record]) -> None:
     pressure = value_text(float(worst["pressure [MPa]"]), "MPa")
     at = f"{TORQUE / 1e3:.0f}\u00a0kN\u00a0m"
     name = str(worst["mesh"]).replace("high speed", "high-speed")
-    most = f"{name} flanks press most, with {pressure}"
+    most = f"{name} flanks have the highest contact pressure, {pressure}"
     page.answer(
-        f"How hard do the flanks of the NREL 750 kW gearbox press on each other at {at}?",
+        f"Which flanks of the NREL 750 kW gearbox have the highest contact pressure at {at}?",
         f"The {most}; the thesis's ratios of pressures hold for equal forces."
         if fits
-        else f"The {most}; the thesis's pressure ratios do not hold: sun over ring is "
-        f"{printed:.3g} in them, {exact:.3g} by Hertz.",
+        else f"The {most}; the thesis's ratio of sun to ring, {printed:.3g}, does not hold: Hertz "
+        f"gives {exact:.3g}.",
         [
             *(
                 page.judged(
@@ -260,14 +262,16 @@ def answer(page: Page, rows: list[Record]) -> None:
                 "0.28",
             ),
             page.value(
-                "pressure of sun over ring, equal forces and widths",
+                "ratio of pressures, sun to ring, equal forces and widths",
                 exact,
                 beside=printed,
                 by="thesis",
             ),
         ],
         hero=HERO,
-        cautions=["One pair of teeth carries the whole load over the whole face: no load factors."],
+        cautions=[
+            "One pair of teeth carries the whole load, evenly over the face: no load factors."
+        ],
         claim="holds" if fits else "does not hold",
     )
 

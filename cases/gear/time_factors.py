@@ -133,8 +133,8 @@ def own_answer(page: Page, turns: dict[str, float], total: float) -> None:
     most, least = (max(turns, key=lambda n: turns[n]), min(turns, key=lambda n: turns[n]))
     page.answer(
         "How often are the teeth of the gears loaded in 20 years?",
-        f"The {most} most often, {value_text(turns[most] * total)} times; the {least} least, "
-        f"{value_text(turns[least] * total)} times.",
+        f"Teeth of the {most} are loaded most often, {value_text(turns[most] * total)} times; "
+        f"those of the {least} least, {value_text(turns[least] * total)} times.",
         [
             page.value(f"loads in 20 years, {most}", turns[most] * total),
             page.value(f"loads in 20 years, {least}", turns[least] * total),
@@ -143,7 +143,7 @@ def own_answer(page: Page, turns: dict[str, float], total: float) -> None:
             page.value("turns of the rotor in 20 years", total),
         ],
         hero=LOADS,
-        cautions=["Standstill outside of 4 to 25 m/s counts no turns; idling is left out."],
+        cautions=["The rotor is taken to stand still outside of 4 to 25 m/s, without idling."],
     )
 
 
@@ -157,14 +157,14 @@ def answer(page: Page, rows: list[Record], hours: Floats, factors: Floats) -> No
     worst = max(teeth, key=lambda name: abs(np.log(teeth[name])))
     holds = abs(teeth[worst] - 1.0) < 0.01
     page.answer(
-        "Do the thesis's hours and time factors count how often gear teeth are loaded?",
+        "Do Tables 7.1 and 7.2 of the thesis count rightly how often gear teeth are loaded?",
         f"Tables 7.1 and 7.2 hold: loads of all {len(rows)} teeth are those counted."
         if holds
-        else f"Table 7.2 does not hold: beside the ring, the {worst} is loaded "
-        f"{value_text(round(teeth[worst]))} times as often as printed; Table 7.1 is right.",
+        else f"Table 7.2 does not hold: relative to the ring, the {worst} is loaded "
+        f"{value_text(teeth[worst])} times as often as printed; Table 7.1 holds.",
         [
             *(
-                page.value(f"loads counted over Table 7.2, {name}", teeth[name])
+                page.value(f"loads counted, times those of Table 7.2, {name}", teeth[name])
                 for name in (worst, "stage 2 pinion", "stage 1 sun", "stage 1 planet, flank to sun")
             ),
             page.value(
@@ -181,7 +181,7 @@ def answer(page: Page, rows: list[Record], hours: Floats, factors: Floats) -> No
             ),
         ],
         hero=HERO,
-        cautions=["Counted for the teeth of the thesis's drivetrain C, from its numbers of teeth."],
+        cautions=["Loads are counted from the numbers of teeth of the thesis's drivetrain C."],
         claim="holds" if holds else "does not hold",
     )
 

@@ -179,13 +179,13 @@ def answer(page: Page, found: dict[str, list[Record]]) -> None:
     mean = float(fine["mean [N/(mm µm)]"]) / (1.0 + of[COUPLED] / 100.0)
     iso, energy, apart = "ISO 6336-1, mean c_gamma", "energy, line contact", "elements, pairs apart"
     words = {
-        key: f"{abs(of[key]):.2g} % {'stiffer' if of[key] > 0.0 else 'softer'}"
+        key: f"{abs(of[key]):.2g}\u00a0% {'more' if of[key] > 0.0 else 'less'}"
         for key in (iso, energy)
     }
     page.answer(
-        "How far off are formulas of mesh stiffness from finite elements of the teeth?",
-        f"With {name}, ISO 6336-1 is {words[iso]} than finite elements; the energy method with "
-        f"line contact is {words[energy]}.",
+        "How far are formulas of mesh stiffness from finite elements of the teeth?",
+        f"With {name}, ISO 6336-1 gives {words[iso]} mesh stiffness than finite elements; the "
+        f"energy method with line contact gives {words[energy]}.",
         [
             page.value(f"mean stiffness by elements, {name} [N/(mm µm)]", mean),
             *(
@@ -193,14 +193,14 @@ def answer(page: Page, found: dict[str, list[Record]]) -> None:
                 for pair, values in list(errors.items())[:2]
                 for method, key in (("ISO 6336-1", iso), ("energy method", energy))
             ),
-            page.value(f"elements, pairs apart: difference of the mean, {name} [%]", of[apart]),
+            page.value(f"uncoupled pairs of teeth: difference of the mean, {name} [%]", of[apart]),
         ],
         hero=hero(name),
         cautions=[
-            "The standard knows neither hub nor load: elements with other hubs and loads come out "
-            "on both sides of it.",
-            "Formulas of Cai and of Kuang and Yang stand as remembered: their papers were not at "
-            "hand.",
+            "The standard does not account for hub or load: finite elements with other hubs and "
+            "loads lie on both sides of it.",
+            "The formulas of Cai and of Kuang and Yang are from memory: their papers were not "
+            "available.",
         ],
     )
 

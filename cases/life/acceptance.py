@@ -104,7 +104,9 @@ def answer(page: Page, ball: float, tapered: float) -> None:
     """State how far lives and ratings [%] are from those of others."""
     two = "F_a 1, F_r 1 kN, clearance 10 um: L10r"
     single = [
-        page.judged(two, "reference life, ball bearing, both loads", "MASTA", "1630.5367"),
+        page.judged(
+            two, "reference life, ball bearing, axial and radial load", "MASTA", "1630.5367"
+        ),
         page.judged("tapered main bearing: C", "dynamic rating C, main bearing", "MASTA"),
         page.judged("tapered main bearing: C_u", "fatigue limit C_u, main bearing", "MASTA"),
     ]
@@ -119,18 +121,21 @@ def answer(page: Page, ball: float, tapered: float) -> None:
     independent = sum(check.basis != "self-consistency" for check in page.checks)
     agree = all(check.passed for check in page.checks)
     page.answer(
-        "Are rating lives of bearings those of other programs, catalogues and closed forms?",
+        "Do rating lives of bearings agree with other programs, catalogues and closed forms?",
         f"{'All' if agree else 'Not all of'} {independent} values agree: lives of a ball bearing "
-        f"are MASTA's to {ball:.1g} %, ratings of a tapered main bearing to {tapered:.1g} %.",
+        f"with MASTA within {ball:.2g}\u00a0%, ratings of a tapered main bearing within "
+        f"{tapered:.2g}\u00a0%.",
         [
-            page.value(f"largest difference of {len(BALL)} lives [%]", ball, at_most=0.1),
+            page.value(
+                f"largest difference of {len(BALL)} ball-bearing lives [%]", ball, at_most=0.1
+            ),
             *single,
             *more,
         ],
         hero=HERO,
         cautions=[
-            "Numbers of ISO 281 are as public code has them; some constants are from memory and "
-            "confirmed by no source: see the table."
+            "Constants of ISO 281 are those of public code; some are from memory, and no source "
+            "confirms them: see the table."
         ],
     )
     page.section("Beside others")

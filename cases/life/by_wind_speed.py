@@ -34,7 +34,7 @@ from fe_drivetrain.cases.references.studied_lives import (
 from fe_drivetrain.cases.references.thesis_beam import BEARINGS, beam_body, housed_body
 from fe_drivetrain.common import Floats
 from fe_drivetrain.report import trace
-from fe_drivetrain.report.number_text import value_text
+from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.studies.shown_units import bearing_in_words
 from fe_drivetrain.turbine_loads.histories import Site
@@ -118,23 +118,25 @@ def of_own(run: Run, page: Page, own: OwnBearing) -> None:
     show(page, lives, winds, speed, printed=False)
     state_meaning(page)
     at = {name: at_site(by_wind(one, speed[:, None]), MEAN_WIND) for name, one in lives.items()}
+    left = 100.0 * at[RISEN] / at[EVENLY]
     page.answer(
         f"How much life of {bearing_in_words(own.one.name)} does the stress at roller ends cost?",
-        f"At {MEAN_WIND:g}\u00a0m/s mean wind the stress riser leaves {at[RISEN] / at[EVENLY]:.2f} "
-        f"of the basic life of {value_text(at[EVENLY], 'years')}; with profiled rollers it is "
+        f"At {MEAN_WIND:g}\u00a0m/s mean wind, stress at roller ends leaves "
+        f"{percent_text(at[RISEN] / at[EVENLY])} of the basic life of "
+        f"{value_text(at[EVENLY], 'years')}; with profiled rollers it is "
         f"{value_text(at[PROFILED], 'years')}.",
         [
-            page.value("life with stress riser over life without", at[RISEN] / at[EVENLY]),
-            page.value("life without stress riser [years]", at[EVENLY]),
-            page.value("life with stress riser [years]", at[RISEN]),
-            page.value("life with stress riser and profiled rollers [years]", at[PROFILED]),
+            page.value("life with stress at ends over life without [%]", left),
+            page.value("life without stress at ends [years]", at[EVENLY]),
+            page.value("life with stress at ends [years]", at[RISEN]),
+            page.value("life with stress at ends and profiled rollers [years]", at[PROFILED]),
         ],
         hero=HERO,
         cautions=[
-            "Hub loads are those of a surrogate, brought to the rated power and speed of the "
-            "drivetrain: `fe-drivetrain life` takes your own files.",
-            "Housings are rigid, and lives are basic ones: `fe-drivetrain life` has lubricant and "
-            "contamination, too.",
+            "Hub loads are those of a substitute turbine, scaled to the rated power and speed of "
+            "the drivetrain: `fe-drivetrain life` takes your own files.",
+            "Housings are rigid, and lives are basic ones: `fe-drivetrain life` includes lubricant "
+            "and contamination.",
         ],
     )
 
@@ -147,26 +149,32 @@ def answer(page: Page, own: dict[str, float], ratios: list[float]) -> None:
     ratio, thesis = own[RISEN] / own[EVENLY], THESIS[1] / THESIS[0]
     low, high = min(ratios), max(ratios)
     holds = low <= thesis <= high
-    site = f"At {MEAN_WIND:g}\u00a0m/s mean wind"
     page.answer(
         "How much life of a main bearing does the stress at roller ends cost?",
-        f"{site} the stress riser leaves {ratio:.2f} of the life; the thesis's {thesis:.2f} lies "
-        f"{'within' if holds else 'not within'} our {low:.2f} to {high:.2f} over arrangements.",
+        f"Stress at roller ends leaves {percent_text(ratio)} of the life at {MEAN_WIND:g}\u00a0m/s "
+        f"mean wind; the thesis's {percent_text(thesis)} lies "
+        f"{'within' if holds else 'not within'} our range of {percent_text(low)} to "
+        f"{percent_text(high)}.",
         [
             page.value(
-                "life with stress riser over life without", ratio, beside=thesis, by="thesis"
+                "life with stress at ends over life without [%]",
+                100.0 * ratio,
+                beside=100.0 * thesis,
+                by="thesis",
             ),
-            page.value("least over arrangements and housings", low),
-            page.value("largest over arrangements and housings", high),
+            page.value("the same, lowest over arrangements and housings [%]", 100.0 * low),
+            page.value("the same, highest over arrangements and housings [%]", 100.0 * high),
             page.value(
-                "life without stress riser [years]", own[EVENLY], beside=THESIS[0], by="thesis"
+                "life without stress at ends [years]", own[EVENLY], beside=THESIS[0], by="thesis"
             ),
-            page.value("life with stress riser [years]", own[RISEN], beside=THESIS[1], by="thesis"),
-            page.value("life with stress riser and profiled rollers [years]", own[PROFILED]),
+            page.value(
+                "life with stress at ends [years]", own[RISEN], beside=THESIS[1], by="thesis"
+            ),
+            page.value("life with stress at ends and profiled rollers [years]", own[PROFILED]),
         ],
         hero=HERO,
         cautions=[
-            "The thesis's years are of another turbine and bearing: ratios compare, years do not."
+            "The thesis's years are of another turbine and bearing: compare shares, not years."
         ],
         claim="holds" if holds else "does not hold",
     )

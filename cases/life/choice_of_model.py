@@ -397,6 +397,12 @@ def answers(page: Page, rows: list[Record]) -> None:
     answer(page, rows)
 
 
+def in_words(model: str) -> str:
+    """Name of a model within a sentence."""
+    article = "a " if model.startswith("beam") else ""
+    return article + model.replace(",", " with").replace("five degrees", "five degrees of freedom")
+
+
 def nearest(rows: list[Record], ground: str) -> Record:
     """The cheapest model on a ground whose lives are near enough at all wind speeds."""
     near = (row for row in rows if row["housing on"] == ground and row[ALONG] <= NEAR)
@@ -408,7 +414,7 @@ def answer(page: Page, rows: list[Record]) -> None:
     fixed, soft = models.GROUNDS
     of = {(row["housing on"], row["model"]): row for row in rows}
     near = {ground: nearest(rows, ground) for ground in models.GROUNDS}
-    names = {ground: str(row["model"]).replace(",", " with") for ground, row in near.items()}
+    names = {ground: in_words(str(row["model"])) for ground, row in near.items()}
     pinned = of[fixed, models.PINNED]
     shown = {
         f"{words}, {ground}": of[ground, name]
@@ -416,27 +422,30 @@ def answer(page: Page, rows: list[Record]) -> None:
         for words, name in (("pinned beam", models.PINNED), ("rigid housing", models.RIGID))
     }
     page.answer(
-        "Which model does the life of a main bearing need?",
-        f"A pinned beam promises {pinned[OVER]:.2g} times the life; cheapest within "
-        f"{NEAR:g}\u00a0%: {names[fixed]}"
-        + ("." if names[fixed] == names[soft] else f", or {names[soft]} on soft ground."),
+        f"Which is the cheapest model whose lives are within {NEAR:g}\u00a0% of the best one's?",
+        f"Within {NEAR:g}\u00a0%, the cheapest model is {names[fixed]}"
+        + (
+            ", on a fixed foot and on soft ground."
+            if names[fixed] == names[soft]
+            else f" (fixed foot) or {names[soft]} (soft ground)."
+        ),
         [
             *(
                 page.value(f"error of life, {row['model']}, {ground} [%]", row[ALONG], at_most=NEAR)
                 for ground, row in near.items()
             ),
             *(
-                page.value(
-                    f"life over that of the best model, {words}", row[OVER], beside=1.0, by="best"
-                )
+                page.value(f"life over the best model's, {words}", row[OVER], beside=1.0, by="best")
                 for words, row in shown.items()
             ),
         ],
         hero=HERO,
         cautions=[
-            "A model is near enough if lives at all wind speeds are, each by its share of damage: "
-            "at a site errors may cancel.",
-            "Face to face flexible rings matter more than in this arrangement, back to back.",
-            "In five degrees a bearing moves along and tilts about all axes but turns freely.",
+            f"A pinned beam promises {pinned[OVER]:.2g} times the life of the best model on a "
+            f"fixed foot, {of[soft, models.PINNED][OVER]:.2g} times on soft ground.",
+            "A model counts if lives at all wind speeds are near, each weighted by its damage: "
+            "over a whole site errors may cancel.",
+            "Rows are back to back; face to face flexible rings matter more. In five degrees of "
+            "freedom the bearing moves and tilts in all directions, but turns freely.",
         ],
     )

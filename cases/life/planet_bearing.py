@@ -69,10 +69,10 @@ def answer(page: Page, lives: Floats) -> None:
     stands, clear = lives[0, 0] / lives[1, 0], lives[0, -1] / lives[0, 0]
     largest = PLANET[-1][0]
     page.answer(
-        "How long does a planet bearing live whose outer ring turns, and what does clearance cost?",
-        f"The planet bearing lives {value_text(lives[0, 0], 'Mrev')} without clearance and "
-        f"{100 * clear:.0f} % of that with {largest:g}\u00a0µm; its standing inner ring costs "
-        f"{100 * (1 - stands):.0f} %.",
+        "How long does a planet bearing last whose outer ring turns, and what does clearance cost?",
+        f"The planet bearing lasts {value_text(lives[0, 0], 'Mrev')} without clearance; a "
+        f"clearance of {largest:g}\u00a0µm leaves {100 * clear:.0f}\u00a0% of that, and the "
+        f"stationary inner ring costs {100 * (1 - stands):.0f}\u00a0%.",
         [
             page.value("life without clearance [Mrev]", lives[0, 0]),
             page.value(f"life with {largest:g} µm of clearance [Mrev]", lives[0, -1]),
@@ -93,7 +93,9 @@ def answer(page: Page, lives: Floats) -> None:
             ),
         ],
         hero=HERO,
-        cautions=["Number and size of the rollers are assumed; they fill the outline of NJ 2232."],
+        cautions=[
+            "Number and size of the rollers are assumed; they fill the outer dimensions of NJ 2232."
+        ],
     )
 
 

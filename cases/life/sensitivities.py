@@ -383,37 +383,42 @@ def answer(page: Page, agree: list[int], one: Lives, held: Lives) -> None:
     both, neither = (sum(a == count for a in agree) for count in (2, 0))
     holds = both == len(agree)
     page.answer(
-        "Does the thesis say rightly what shortens the modified life of a main bearing?",
+        "Are the thesis's statements on what shortens a main bearing's modified life right?",
         f"All {both} statements of the thesis hold, with its choices and with ours."
         if holds
-        else f"Of {len(agree)} statements of the thesis {both} hold; {neither} do not hold with "
-        f"its choices or ours, and {len(agree) - both - neither} depend on the choices.",
+        else f"{both} of the thesis's {len(agree)} statements on bearing life hold, {neither} do "
+        f"not hold, and {len(agree) - both - neither} depend on whose modelling choices are taken.",
         [
-            page.value("statements that hold with both choices", both, beside=len(agree), by="all"),
             page.value(
-                "life, shear 0.1 to 0.2 [%]",
+                "statements that hold with the thesis's and with our choices",
+                both,
+                beside=len(agree),
+                by="all",
+            ),
+            page.value(
+                "change of life, wind shear 0.1 to 0.2 [%]",
                 fall(one, BASE, "shear 0.1"),
                 beside=-50.0,
                 by="thesis, about",
             ),
             page.value(
-                "life, shear 0.2 to 0.4 [%]",
+                "change of life, wind shear 0.2 to 0.4 [%]",
                 fall(one, "shear 0.4"),
                 beside=fall(held, "shear 0.4"),
                 by="pitch held",
             ),
-            page.value("life, 40 to 60 °C [%]", fall(one, "60 degC")),
-            page.value("life, site of 8 to 12 m/s [%]", fall(one, "site 12 m/s")),
+            page.value("change of life, 40 to 60 °C [%]", fall(one, "60 degC")),
+            page.value("change of life, mean wind of 8 to 12 m/s [%]", fall(one, "site 12 m/s")),
             page.value(
-                "life, clean to very severe dirt [%]",
+                "change of life, clean to very severe contamination [%]",
                 100.0 * (ratio(one, (BASE, "G4"), (BASE, "G1")) - 1.0),
             ),
         ],
         hero="Life over that of the base, choices of the thesis",
         cautions=[
-            "Key figures are changes of life with the thesis's choices and clean grease; with a "
-            "housing in series shear costs much less.",
-            "Contamination in grease goes by constants from memory, not verified.",
+            "Changes of life are those with the thesis's choices and clean grease; with the "
+            "housing in series wind shear costs much less.",
+            "The effect of contamination in grease uses constants from memory, not verified.",
         ],
         claim="holds" if holds else "holds in part",
     )

@@ -418,12 +418,18 @@ def answer(
     factor = float(modified["high over low"])
     page.answer(
         "How certain is the modified life of a main bearing, and which input decides it?",
-        f"Modified life is uncertain by a factor of {factor:.2g}, {low} to {high}\u00a0years; "
+        f"Modified life is uncertain by a factor of {factor:.2g}, from {low} to {high}\u00a0years; "
         f"{words}.",
         [
             page.value("nominal modified life [years]", float(modified[NOMINAL_LIFE])),
-            page.value("its 2.5 % [years]", float(modified[LOW_LIFE])),
-            page.value("its 97.5 % [years]", float(modified[HIGH_LIFE])),
+            page.value(
+                "modified life that 2.5 % of samples do not reach [years]",
+                float(modified[LOW_LIFE]),
+            ),
+            page.value(
+                "modified life that 97.5 % of samples do not reach [years]",
+                float(modified[HIGH_LIFE]),
+            ),
             *(
                 page.value(
                     f"share of the variance, {short_name(row)} [%]",
@@ -439,10 +445,10 @@ def answer(
         ],
         hero=CHART.format("modified"),
         cautions=[
-            "A wrong model is no scatter: more samples do not show what a pinned beam or a rigid "
-            "housing changes.",
-            "Distributions of the inputs are assumed; years are for ranking, since turbine and "
-            "bearing are stand-ins.",
+            "The error of the model is not included: a pinned beam or a rigid housing changes life "
+            "in addition.",
+            "The range holds 95 % of samples, whose distributions are assumed; turbine and bearing "
+            "are substitutes, so that years serve only to rank.",
         ],
     )
     page.say(

@@ -135,19 +135,25 @@ def answer(page: Page, thesis: Record, own: Record) -> None:
     holds, also = is_where_stated(thesis), is_where_stated(own)
     upwind, downwind = (f"{name} row, centre of damage [deg]" for name in ROWS)
     places = [float(thesis[f"{name}, centre [deg]"]) for name in ROWS]
-    stated = "as the thesis says" if holds else "not where the thesis says"
-    other = "there as well" if also else "downwind row not on top"
+    stated = "near the bottom, as it says" if holds else f"at {places[0]:.0f}°, not where it says"
+    downwind_own = float(own["downwind, centre [deg]"])
+    off_top = (
+        f"With our choices the centre of the downwind row's damage is at {downwind_own:.0f}°, not "
+        "on top as the thesis says."
+    )
+    other = "in the same places" if also else "and not all holds"
     page.answer(
-        "Where is the life of a main bearing used up?",
-        f"The upwind row does {share:.0f}\u00a0% of the damage, at {places[0]:.0f}°, {stated}; "
-        f"with our choices {ours:.0f}\u00a0%, {other}.",
+        "In which row of a main bearing, and where on it, is life used up?",
+        f"With the thesis's choices the upwind row takes {share:.0f}\u00a0% of the damage, "
+        f"{stated}; with ours {ours:.0f}\u00a0%, {other}.",
         [
             page.value("damage of the upwind row, thesis's choices [%]", share),
             page.value(upwind, places[0], beside=270.0, by="thesis, bottom"),
             page.value(downwind, places[1], beside=90.0, by="thesis, top"),
             page.value("damage of the upwind row, our choices [%]", ours),
             page.value(
-                "downwind row, centre, our choices [deg]", float(own["downwind, centre [deg]"])
+                "downwind row, centre of damage, our choices [deg]",
+                downwind_own,
             ),
             page.value(
                 "damage of the rings that turn, thesis's choices [%]",
@@ -156,8 +162,9 @@ def answer(page: Page, thesis: Record, own: Record) -> None:
         ],
         hero=caption("choices of the thesis"),
         cautions=[
+            *([off_top] if np.sin(np.radians(downwind_own)) <= 0.5 else []),
             "Angles are seen looking downwind: 0° right, 90° on top, 270° at the bottom.",
-            "Lives rate all places of a step as one, which is on the safe side by a few percent.",
+            "At each step one load stands for all places, on the safe side by a few percent.",
         ],
         claim="holds" if holds and also else "holds in part" if holds else "does not hold",
     )

@@ -72,7 +72,7 @@ damping: {shafts: 0.006, meshes: 0.05}
         ("gear/nrel_750kw", "The file leaves them to ISO 6336-1"),
         ("gear/slices", "35 slices give K_Hbeta of all 3 meshes"),
         ("gear/subsurface", "presses most"),
-        ("gear/time_factors", "The stage 2 pinion most often"),
+        ("gear/time_factors", "Teeth of the stage 2 pinion are loaded most often"),
     ],
 )
 def test_a_case_answers_for_gears_of_the_users(
