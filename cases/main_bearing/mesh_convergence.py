@@ -159,17 +159,17 @@ def judge(page: Page, one: Converged) -> None:
     )
     page.answer(
         "How fine a mesh do main-bearing reactions and K_R need?",
-        f"With {formatted(one.unknowns[-2])} unknowns reactions are within "
-        f"{max_error['at the']:.2g} % and K_R within {max_error['K_R']:.2g} % of their limits at "
-        "element size zero.",
+        f"A mesh of {formatted(one.unknowns[-2])} unknowns gives bearing reactions within "
+        f"{max_error['at the']:.2g}\u00a0% and K_R within {max_error['K_R']:.2g}\u00a0% of the "
+        "values extrapolated to an infinitely fine mesh.",
         [
             page.judged(f"{quantity}: estimated error of sizes x {one.last:g}", name)
             for quantity, name in shown_first
         ],
         hero=HERO,
         cautions=[
-            "Limits are extrapolated at first order, since stress is singular along the edges of "
-            "ring and housing; bands hold for lower orders, too.",
+            "The extrapolation is of first order, since stress is singular along the edges of ring "
+            "and housing; the uncertainties (±) cover lower orders, too.",
         ],
     )
     page.say(
