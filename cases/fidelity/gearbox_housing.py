@@ -133,10 +133,12 @@ def answer(page: Page, compared: Compared, rigid: float, softer: float) -> None:
     models, errors = compared.ladder.models, compared.errors[0]
     error, band = 100 * errors[compared.chosen], 100 * compared.own
     chosen, times = models[compared.chosen], compared.ladder.seconds
+    name = chosen.title.replace(", ", " and ")
+    name = f"A {name}" if name.startswith("rigid") else f"A model with {name}"
     about_x, allowed = certain_value(solid), f"{100 * TOLERANCE:g}\u00a0%"
     verdict = (
-        f"Modelled as {chosen.title}, the suspension has its torsional stiffness, {about_x}, "
-        f"with an error of {value_text(error, '%', band, False)} ({allowed} allowed)."
+        f"{name} is enough: it gives the suspension's torsional stiffness, "
+        f"{about_x}, with an error of {value_text(error, '%', band, False)} ({allowed} allowed)."
     )
     if chosen is compared.ladder.top:
         which = (

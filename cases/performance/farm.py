@@ -143,7 +143,7 @@ def answer(
     page.answer(
         "How fast are load cycles counted in years of a wind farm's load histories?",
         f"Counting {samples / 1e6:,.3g}\u00a0million samples takes {pieces.median:.3g}\u00a0s in "
-        f"pieces{on}, {quicker} one stream; the cycles are the same to the last digit.",
+        f"pieces{on}, {quicker} one stream; the cycles are exactly the same.",
         [
             page.value("samples a second, in pieces [million]", rate / 1e6),
             page.value(

@@ -96,9 +96,9 @@ def answer(page: Page, best: list[Record], factored: dict[str, Times]) -> None:
     slowest = max(found, key=lambda row: float(row[OWN]), default=None)
     ratio = factored["SuperLU"].median / factored["fronts"].median
     against = (
-        f"SuperLU needs {ratio:.2g} times as long"
+        f"factorisation by SuperLU takes {ratio:.2g} times as long"
         if ratio >= 1.0
-        else f"SuperLU is {1 / ratio:.2g} times as fast"
+        else f"factorisation by SuperLU is {1 / ratio:.2g} times as fast"
     )
     time_text = "no setting is exact enough"
     if slowest is not None:

@@ -139,7 +139,7 @@ def answer(page: Page, found: "Assembled", rows: list[Record]) -> None:
     page.answer(
         "How fast is the stiffness matrix of a solid assembled?",
         f"Assembling {found.unknowns:,} unknowns takes {1e3 * found.own.median:.3g}\u00a0ms, "
-        f"{faster}, and {formatted(100 * found.share, 2)}\u00a0% of the time of the solve{wins}.",
+        f"{faster}, and {formatted(100 * found.share, 2)}\u00a0% of the solve's time{wins}.",
         [
             page.value("time of scikit-fem over ours", found.ratio, beside=FASTER, by="goal"),
             page.value(

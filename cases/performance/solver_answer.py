@@ -32,13 +32,13 @@ def answer(page: Page, choices: Sequence[Record], shared: float) -> None:
     rule = (
         "that is the scatter between runs"
         if good == len(choices)
-        else f"at worst {ratio:.2g} times, where {worst['best']} is fastest"
+        else f"at worst {ratio:.2g} times, against {worst['best']}"
     )
     estimates = [check for check in page.checks if check.check == "at least"]
     page.answer(
         "Does the setting auto choose the fastest solver?",
-        f"In {good} of {len(choices)} cases the solver chosen by auto takes at most {ALLOWED:g} "
-        f"times the time of the fastest; {rule}.",
+        f"In {good} of {len(choices)} cases auto's choice takes at most {ALLOWED:g} times the time "
+        f"of the fastest solver; {rule}.",
         [
             page.value(
                 "time of auto's choice over that of the fastest, at worst",

@@ -48,7 +48,7 @@ def answer(page: Page, rows: Sequence[Record]) -> None:
     by_place = {str(row["where"]): row for row in numbers if row["where"] in MOST}
     stiffness, inertia = (float(by_place[where]["printed / right"]) for where in list(MOST)[:2])
     page.answer(
-        "Which statements of PROTEST do not hold, and what do they change?",
+        "Which statements of the PROTEST report do not hold, and what do they change?",
         f"{len(wrong)} statements of PROTEST do not hold; {len(numbers)} change a number: a "
         f"stiffness is {times_off(stiffness)}, an inertia {times_off(inertia)}.",
         [
@@ -59,7 +59,7 @@ def answer(page: Page, rows: Sequence[Record]) -> None:
         ],
         hero=APART,
         cautions=[
-            "The text was extracted from a PDF file: what is garbled in it may be right in print.",
+            "The text was extracted automatically: what is garbled in it may be right in print.",
             "The guideline of Germanischer Lloyd was not read: its numbers are left out.",
         ],
         claim="does not hold",

@@ -113,7 +113,9 @@ def answer(
     """State the torque of dips, resonances in operation, and the force [kN] of an offset."""
     catalogue = protest_catalogue()
     largest = page.judged(LARGEST, "largest torque in a dip over that before", "two steps")
-    dips = f"They leave out voltage dips ({formatted(largest.value, 3)} times the torque before)"
+    dips = (
+        f"Load cases leave out voltage dips ({formatted(largest.value, 3)} times the torque before)"
+    )
     resonances = f"{met} resonances in the operating range"
     verdict = f"{dips} and {resonances}"
     forces = []

@@ -152,7 +152,7 @@ def answer(page: Page, rows: list[Record], noisy: list[Record], title: str) -> N
     page.answer(
         "Do PROTEST's equations identify a drivetrain's stiffness, damping and inertia?",
         f"PROTEST's Eq 4 finds the stiffness within {stiffness:.1g}\u00a0%, "
-        f"{'and' if right else 'but'} its methods A to C {'find' if right else 'do not find'} the "
+        f"{'and' if right else 'but'} methods A to C {'find' if right else 'do not find'} the "
         f"damping: {formatted(low, 2)} to {formatted(high, 2)} times the true one.",
         [
             page.judged("resonance, Eq 4: stiffness", "stiffness by Eq 4", "closed form"),

@@ -111,15 +111,15 @@ def answer(page: Page, known: Known, rows: list[Record], damping: list[Record]) 
         abs(float(row[key]) / float(row["true"]) - 1.0) for row in damping for key in (CLEAN, NOISY)
     )
     page.answer(
-        "Which measurement case loads the shaft most, and do stops give its damping?",
-        f"{str(largest['what']).capitalize()} loads the shaft most, with {most / rated:.2f} times "
-        f"rated torque; the decay after stops gives its damping within {percent_text(off)}.",
+        "Which measurement case loads the shaft most, and do stops give the damping?",
+        f"{str(largest['what']).capitalize()} loads the shaft most, {most / rated:.2f} times "
+        f"rated torque; the decay after stops gives the damping within {percent_text(off)}.",
         [
             page.value("largest torque of the shaft [N m]", most, beside=rated, by="rated"),
             page.value("lowest torque of the shaft [N m]", least, beside=rated, by="rated"),
             *(
                 page.value(
-                    f"damping ratio after {row['case']}, {name} [%]",
+                    f"damping ratio after stop {row['case']}, {name} [%]",
                     100.0 * float(row[key]),
                     beside=100.0 * float(row["true"]),
                     by="truth",
