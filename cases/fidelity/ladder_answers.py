@@ -159,12 +159,18 @@ def _value(page: Page, result: AdviseResult) -> list[KeyFigure]:
     return [page.value(name, value / size, abs(value) / size * advice.top.estimate)]
 
 
+def _in_brackets(neglected: str) -> str:
+    """What a level neglects, its consequence in brackets: "housings that give (they are rigid)"."""
+    what, _, consequence = neglected.partition(": ")
+    return f"{what} ({consequence})" if consequence else what
+
+
 def _cautions(result: AdviseResult, known: LevelResult) -> list[str]:
     """What the level neglects, and what the band of the last one rests on."""
     cautions = []
     if known.model.neglects and known is not result.advice.top:
         untold = [one for one in known.model.neglects if one.startswith("cannot tell")]
-        neglects = [one for one in known.model.neglects if one not in untold]
+        neglects = [_in_brackets(one) for one in known.model.neglects if one not in untold]
         cautions += [f"The model neglects: {'; '.join(neglects)}."] if neglects else []
         cautions += [f"It {one.replace('_', ' ')}." for one in untold]
     band = result.advice.top.band

@@ -210,13 +210,15 @@ def answer(page: Page, levels: list[Record]) -> None:
     """State how near a search comes, and what its levels cost."""
     corrected, exact = levels[-2], levels[-1]
     faster = exact["processor time [s]"] / corrected["processor time [s]"]
-    pace = f"{faster:.2g} times as fast" if faster >= 1.0 else f"in {1 / faster:.2g} times the time"
+    pace = f"and is {faster:.2g} times as fast"
+    if faster < 1.0:
+        pace = f"but takes {1 / faster:.2g} times as long"
     near, kept = corrected["error of the mass [%]"], 0.1
     found = f"within {kept:g}" if near <= kept else f"only within {near:.2g}"
     page.answer(
         "How near does a beam model come to the lightest shaft, and at what cost?",
-        f"A beam model, corrected {ROUNDS} times by the axisymmetric one, finds the latter's "
-        f"lightest shaft {found}\u00a0%, {pace} as a search with the latter alone.",
+        f"Corrected {ROUNDS} times, a beam model finds the axisymmetric model's lightest shaft "
+        f"{found}\u00a0%, {pace} as that model alone.",
         [
             page.judged(MASS[: MASS.index(" [")], "lightest shaft", "Lagrange"),
             page.judged(

@@ -128,7 +128,7 @@ def answer(page: Page, finest: dict[str, Record], width: float) -> None:
     inside = all(figure.status == "good" for figure in stiffness)
     page.answer(
         "How accurate is an axisymmetric model's torsional stiffness of a stepped shaft?",
-        f"The axisymmetric model's torsional stiffness lies {'within' if inside else 'not within'} "
+        f"The axisymmetric model's torsional stiffness lies {'between' if inside else 'not between'} "
         f"a lower and an upper bound that are only {value_text(100 * width, '%')} apart.",
         [
             page.value("largest difference from the middle of the bounds [%]", 100 * error),

@@ -80,8 +80,9 @@ def answer(page: Page, found: list[Compared]) -> None:
     page.answer(
         "For which shafts is a beam enough?",
         f"A beam is accurate within {100 * BEARABLE:g}\u00a0% in bending for "
-        f"{len(enough[bending])} of {len(found)} shafts; for {titled(worst_bending.scene)} its "
-        f"error is {formatted(100 * worst_bending.changes[bending].beam, 3)}\u00a0%.",
+        f"{len(enough[bending])} of {len(found)} shafts; its largest error is "
+        f"{formatted(100 * worst_bending.changes[bending].beam, 3)}\u00a0% "
+        f"({titled(worst_bending.scene)}).",
         [
             *(
                 page.value(

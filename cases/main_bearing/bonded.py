@@ -268,8 +268,8 @@ def verdict_of(
     pinned_error = 100 * abs(work.pinned[2, 2] / up.value - 1)
     of_up = value_text(up.value, "kN", up.band, False)
     said = (
-        f"A vertical hub force of 1\u00a0kN loads the bonded bearing with {of_up}; a beam with "
-        f"torsional spring K_R errs by {spring_error:.2g}\u00a0%, a pinned beam by "
+        f"A vertical hub force of 1\u00a0kN loads the bonded bearing with {of_up}; a beam on "
+        f"torsional springs errs by {spring_error:.2g}\u00a0%, a pinned beam by "
         f"{pinned_error:.2g}\u00a0%."
     )
     if work.other is None:

@@ -116,8 +116,8 @@ def answer(page: Page, bonded: StudyResult, hero: str) -> None:
     K_R = {row["plane"]: float(row["averaged seat [MN m/rad]"]) for row in seat_rows(bonded)}
     page.answer(
         "Is a beam with a torsional spring enough for a bonded main bearing?",
-        f"{'Yes, as the thesis finds' if enough else 'No, it is not'}: a beam with the housing's "
-        f"K_R as spring has a mean error of {sprung.mean_error_percent:.2g}\u00a0% (thesis "
+        f"{'Yes, for this housing' if enough else 'No, it is not'}: a beam with its K_R as "
+        f"spring has a mean error of {sprung.mean_error_percent:.2g}\u00a0% (thesis "
         f"{of_sprung[0]:g}\u00a0%), a pinned beam {pinned.mean_error_percent:.3g}\u00a0%.",
         [
             page.value(
@@ -150,7 +150,7 @@ def answer(page: Page, bonded: StudyResult, hero: str) -> None:
         hero=hero,
         cautions=[
             "Hub loads and housing of the thesis are not public: its numbers stand beside ours "
-            "for orientation.",
+            "for orientation. For a housing with the thesis's K_R see main_bearing/rmse.",
         ],
         claim="holds" if enough else "does not hold",
     )

@@ -89,14 +89,16 @@ def answer(page: Page, whole: dict[str, Record], rows: list[Record], everywhere:
         f"10\u00a0%, {large:.0f}\u00a0% at {100 * SHARES[-1]:g}\u00a0%; the thesis defines none.",
         [
             page.value(
-                "time in moment loops, double-row bearing, by 10 % [%]", float(moment[share])
+                "time in moment loops, double-row bearing, threshold 10 % [%]", float(moment[share])
             ),
-            page.value(f"the same by {100 * SHARES[-1]:g} %, medium turbulence [%]", large),
-            page.value("moment loops for each blade passing, by 10 %", float(moment[rate])),
-            page.value("time in force loops, double-row bearing, by 10 % [%]", float(force[share])),
-            page.value("force loops for each blade passing, by 10 %", float(force[rate])),
+            page.value(f"the same, threshold {100 * SHARES[-1]:g} %, medium turbulence [%]", large),
+            page.value("moment loops for each blade passing, threshold 10 %", float(moment[rate])),
             page.value(
-                "time in force loops, spherical bearing, by 50 % [%]",
+                "time in force loops, double-row bearing, threshold 10 % [%]", float(force[share])
+            ),
+            page.value("force loops for each blade passing, threshold 10 %", float(force[rate])),
+            page.value(
+                "time in force loops, spherical bearing, threshold 50 % [%]",
                 by_excursion["DSRB, force", 0.5],
                 beside=HART,
                 by="Hart 2020, about",

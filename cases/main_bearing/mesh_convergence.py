@@ -158,10 +158,10 @@ def judge(page: Page, one: Converged) -> None:
         ("K_R horizontal, averaged seat [MN m/rad]", "error of K_R, horizontal plane"),
     )
     page.answer(
-        "How fine a mesh do main-bearing reactions and K_R need?",
-        f"A mesh of {formatted(one.unknowns[-2])} unknowns gives bearing reactions within "
-        f"{max_error['at the']:.2g}\u00a0% and K_R within {max_error['K_R']:.2g}\u00a0% of the "
-        "values extrapolated to an infinitely fine mesh.",
+        "How fine a mesh do main-bearing reactions and the torsional stiffness K_R need?",
+        f"By extrapolation, a mesh of {formatted(one.unknowns[-2])} unknowns gives bearing "
+        f"reactions within {max_error['at the']:.2g}\u00a0% and K_R within "
+        f"{max_error['K_R']:.2g}\u00a0% of those of an infinitely fine one.",
         [
             page.judged(f"{quantity}: estimated error of sizes x {one.last:g}", name)
             for quantity, name in shown_first

@@ -295,7 +295,7 @@ def answer_of_both(page: Page, errors: dict[str, calibrated.Errors], work: Worke
     in_part = min(one.sprung[0] for one in errors.values()) <= calibrated.ENOUGH
     page.answer(
         "Which beam is enough for the forces on a bonded main bearing?",
-        f"With the thesis's K_R a beam with torsional springs errs by "
+        "With the thesis's torsional stiffness K_R a beam on springs errs by "
         f"{formatted(other.as_thesis[0], 3)}\u00a0% on average, "
         f"{stated} {PUBLISHED[third][0]:g}\u00a0%; a pinned beam by {other.pinned[0]:.3g}\u00a0%.",
         [

@@ -104,7 +104,7 @@ def answer(page: Page, tilt: SeatStiffness, series: bands.Series) -> None:
     vertical, horizontal = (certain_value(one) for one in found)
     spreads = {plane: tilt.spread(plane) for plane in tilt.by_plane}
     page.answer(
-        "How stiff against tilting are a main bearing and its housing?",
+        "How stiff against tilting (K_R) are a main bearing and its housing?",
         f"K_R is {vertical} in the vertical and {horizontal} in the horizontal plane; "
         f"three ways to read it differ by {max(spreads.values()):.0f} %.",
         [
@@ -134,8 +134,8 @@ def answer_of_both(page: Page, found: dict[str, calibrated.Housed], tilt: SeatSt
     for p, plane in enumerate(generic.K_R):
         page.found(f"K_R, {plane} plane [MN m/rad]", generic.K_R[plane], generic.band(p))
     page.answer(
-        "How stiff against tilting are a main bearing and its housing?",
-        f"The generic housing's K_R is {vertical} vertically and {horizontal} horizontally, up to "
+        "How stiff against tilting (K_R) are a main bearing and its housing?",
+        f"The generic housing's K_R is {vertical} vertically, {horizontal} horizontally, up to "
         f"{times:.1f} times the thesis's; three ways to read it differ by {spread:.0f}\u00a0%.",
         [
             *(

@@ -235,10 +235,11 @@ def answer(
     mesh = max(peak_of(one, "mesh")[1] for one in dips.values())
     aligned = abs(worst.result.extremes[worst.worst].rated) / 1e3
     mounted = MOUNT in worst.result.extremes
+    name = worst.name.replace(" mm", "\u00a0mm").replace(" mrad", "\u00a0mrad")
     page.answer(
         "What do misalignment and voltage dips do inside the gearbox, over time?",
-        f"With the {worst.name}, a bearing's force changes by "
-        f"{value_text(change.value or 0.0, 'kN')}; voltage dips reach "
+        f"With the {name}, a bearing's force changes by "
+        f"{value_text(change.value or 0.0, 'kN')}; dips reach "
         f"{formatted(peak.value or 0.0, 3)} times rated torque; {hold} of {len(rows)} statements "
         "hold.",
         [

@@ -355,7 +355,7 @@ def answer(
     page.answer(
         "How uncertain are frequencies, loads and damage if the inputs are uncertain?",
         f"With most inputs uncertain by ±\u00a0{100 * spread:g}\u00a0%, the first frequency is "
-        f"uncertain by ±\u00a0{formatted(wide[FIRST], 2)}\u00a0% and damage by "
+        f"uncertain by ±\u00a0{formatted(wide[FIRST], 2)}\u00a0%, high-speed shaft damage by "
         f"±\u00a0{formatted(wide[DAMAGE], 2)}\u00a0%, mainly through {most[DAMAGE].name}.",
         [
             *(
@@ -373,9 +373,9 @@ def answer(
         hero=HERO,
         cautions=[
             f"The {100 * spread:g} % are assumed, since Table 4.7 of PROTEST gives values for "
-            "masses alone; the results are proportional to them.",
-            f"The first frequency depends most on {most[FIRST].name}, damage on "
-            f"{most[DAMAGE].name}.",
+            "masses alone; results are nearly proportional to them.",
+            f"The first frequency depends most on the {most[FIRST].name}, damage on the "
+            f"{most[DAMAGE].name}.".replace("LSS", "low-speed shaft"),
             "Inputs are independent and uniformly distributed; damage is the sum of torque ranges "
             "to the power of 6.6.",
         ],
