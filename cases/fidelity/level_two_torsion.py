@@ -128,8 +128,9 @@ def answer(page: Page, finest: dict[str, Record], width: float) -> None:
     inside = all(figure.status == "good" for figure in stiffness)
     page.answer(
         "How accurate is an axisymmetric model's torsional stiffness of a stepped shaft?",
-        f"The axisymmetric model's torsional stiffness lies {'between' if inside else 'not between'} "
-        f"a lower and an upper bound that are only {value_text(100 * width, '%')} apart.",
+        "The axisymmetric model's torsional stiffness lies "
+        f"{'between' if inside else 'not between'} a lower and an upper bound that are only "
+        f"{value_text(100 * width, '%')} apart.",
         [
             page.value("largest difference from the middle of the bounds [%]", 100 * error),
             page.value("distance between the bounds [%]", 100 * width),
