@@ -229,8 +229,8 @@ def answer(
     exact = [check for check in page.checks if check.check == "equals"]
     page.answer(
         question,
-        f"A model with {last.unknowns:,} unknowns ({title.lower()}) needs "
-        f"{value_text(most[worst], 'GiB')} of memory and {value_text(last.seconds or 0.0, 's')}; "
+        f"A model with {last.unknowns:,} unknowns ({title.lower()}) takes "
+        f"{value_text(most[worst], 'GiB')} and {value_text(last.seconds or 0.0, 's')}; "
         f"{reached}.",
         [
             page.value("peak memory [GiB]", most[worst], beside=MEMORY, by="goal"),

@@ -113,7 +113,7 @@ def answer(page: Page, known: Known, rows: list[Record], damping: list[Record]) 
     page.answer(
         "Which measurement case loads the shaft most, and do stops give the damping?",
         f"{str(largest['what']).capitalize()} loads the shaft most, {most / rated:.2f} times "
-        f"rated torque; the decay after stops gives the damping within {percent_text(off)}.",
+        f"rated torque; stops give the damping within {percent_text(off)}.",
         [
             page.value("largest torque of the shaft [N m]", most, beside=rated, by="rated"),
             page.value("lowest torque of the shaft [N m]", least, beside=rated, by="rated"),

@@ -97,8 +97,8 @@ def answer(
     holds = [float(row["case [mm]"]) for row in cases if row["the core fails first"] == "no"]
     page.answer(
         "How oval does a pitch bearing become under the blade-root moment, and what decides it?",
-        f"A moment of 3\u00a0MN\u00a0m makes the ring oval by {near:.0f}\u00a0µm on a stiff hub "
-        f"and by {far:.0f}\u00a0µm on a hub neck {long['neck [m]']:g}\u00a0m long: "
+        f"A moment of 3\u00a0MN\u00a0m makes the ring oval by {near:.0f}\u00a0µm on a stiff hub, "
+        f"by {far:.0f}\u00a0µm on a hub neck {long['neck [m]']:g}\u00a0m long: "
         f"{'the hub decides' if far > 1.2 * near else 'the hub hardly matters'}.",
         [
             page.value(
