@@ -167,25 +167,28 @@ def answer(page: Page, limits: Limits, sweep: Sweep, ends: tuple[float, float]) 
     low, high = ends
     page.answer(
         "Does it matter how a main bearing's joint is modelled?",
-        f"Only between {formatted(low / 1e6, 2)} and {formatted(high / 1e6, 2)}\u00a0MN\u00a0m/rad "
-        "of tilt stiffness: below, a spherical joint is good enough, above, a rigid one.",
+        f"A bearing's tilt stiffness matters only between {formatted(low / 1e6, 2)} and "
+        f"{formatted(high / 1e6, 2)}\u00a0MN\u00a0m/rad: below, a spherical joint is accurate "
+        "enough; above, a rigid one.",
         [
-            page.value("spherical is enough up to [MN m/rad]", low / 1e6),
-            page.value("rigid is enough from [MN m/rad]", high / 1e6),
+            page.value("a spherical joint is enough up to [MN m/rad]", low / 1e6),
+            page.value("a rigid joint is enough from [MN m/rad]", high / 1e6),
             page.value(
                 "largest share of a hub moment that the bearing takes", limits.all.tilt_moment
             ),
             *(
-                page.value(f"of that share, {NAMES[k]} [%]", sweep.share(k), beside=100.0, by="all")
+                page.value(
+                    f"part of that share, {NAMES[k]} [%]", sweep.share(k), beside=100.0, by="all"
+                )
                 for k in KNOWN
             ),
-            page.value("share with a bonded joint", limits.bonded.tilt_moment),
+            page.value("share that a bonded bearing takes", limits.bonded.tilt_moment),
         ],
         hero=HERO,
         cautions=[
-            f"Enough is within {100 * ENOUGH:g} % of the largest share; stiffnesses of real "
-            "bearings depend on load and clearance.",
-            "Bonding keeps the bore round as well, which no spring does.",
+            f"Enough means within {100 * ENOUGH:g} % of the largest moment that the bearing can "
+            "take; stiffnesses of real bearings depend on load and clearance.",
+            "A bonded joint also keeps the bore round, which no spring does.",
         ],
     )
 

@@ -202,10 +202,9 @@ class Compared:
     @property
     def caption(self) -> str:
         """Caption of the chart of errors against time."""
-        return _capital(
-            f"{self.first.name}: error against time, bars: band of the solid; the chosen "
-            "level is enough"
-        )
+        known = self.known_errors[self.chosen] <= TOLERANCE
+        enough = "the chosen level is enough" if known else "none is accurate enough"
+        return _capital(f"{self.first.name}: error against time, bars: band of the solid; {enough}")
 
     def sentence(self) -> str:
         """The level that is enough, and how far it is from the solid."""

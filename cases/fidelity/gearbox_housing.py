@@ -133,12 +133,21 @@ def answer(page: Page, compared: Compared, rigid: float, softer: float) -> None:
     models, errors = compared.ladder.models, compared.errors[0]
     error, band = 100 * errors[compared.chosen], 100 * compared.own
     chosen, times = models[compared.chosen], compared.ladder.seconds
-    enough = f"the {chosen.title} is enough, to {value_text(error, '%', band, False)}"
+    name = chosen.title.replace(", ", " and ")
+    name = f"A {name}" if name.startswith("rigid") else f"A model with {name}"
+    about_x, allowed = certain_value(solid), f"{100 * TOLERANCE:g}\u00a0%"
+    verdict = (
+        f"{name} is enough: it gives the suspension's torsional stiffness, "
+        f"{about_x}, with an error of {value_text(error, '%', band, False)} ({allowed} allowed)."
+    )
     if chosen is compared.ladder.top:
-        enough = f"only the solid is within {100 * TOLERANCE:g}\u00a0%"
+        which = (
+            "Only the solid model gives" if compared.own <= TOLERANCE else "No model surely gives"
+        )
+        verdict = f"{which} the suspension's torsional stiffness, {about_x}, within {allowed}."
     page.answer(
         "Which model does the suspension of a gearbox on torque arms need?",
-        f"The suspension has {certain_value(solid)} about the shaft's axis; for that {enough}.",
+        verdict,
         [
             solid,
             page.value(
@@ -159,7 +168,7 @@ def answer(page: Page, compared: Compared, rigid: float, softer: float) -> None:
                 if np.isfinite(one)
             ),
             page.value(
-                "time of the solid over that of the level that is enough",
+                "computing time of the solid model over that of the chosen one",
                 times[-1] / times[compared.chosen],
             ),
             page.value("taken off the hub's torsional stiffness [%]", softer),

@@ -15,6 +15,16 @@ MOST_OTHERS = 2
 
 _ROUND_OFF = 1e-9  # relative: what solvers leave of a quantity that statics decides
 
+_IN_WORDS = {
+    "statics": "statics alone",
+    "Timoshenko beam": "Timoshenko beam model",
+    "meridian in harmonics": "axisymmetric shaft model",
+    "solid shaft": "solid-element shaft model",
+    "assembly of solids": "full solid-element model",
+}
+"""Titles of levels as a reader says them."""
+_OF_HOUSINGS = {"rigid housings": "rigid housings", "housings as springs": "spring housings"}
+
 
 def answer(
     page: Page, result: AdviseResult, row: Record, torsion: KeyFigure | None, quick: bool
@@ -46,18 +56,31 @@ def answer(
             *own,
             *_value(page, result),
             *(_error(page, one, top) for one in _others(result, known)),
-            page.value(f"time of {_name(known)} [s]", known.seconds),
-            *([] if known is top else [page.value(f"time of {_name(top)} [s]", top.seconds)]),
+            page.value(f"computing time, {_plain(known)} [s]", known.seconds),
+            *(
+                []
+                if known is top
+                else [page.value(f"computing time, {_plain(top)} [s]", top.seconds)]
+            ),
         ][:6],
         hero=result.chart().caption,
         cautions=_cautions(result, known),
     )
 
 
-def _name(one: LevelResult) -> str:
-    """Title of a level in a sentence: "the solid shaft with housings as springs", "statics"."""
-    title = one.model.title.replace(", ", " with ")
-    return title if one.model.level == 0 else f"the {title}"
+def _plain(one: LevelResult) -> str:
+    """A level in words: "solid-element shaft model with spring housings"."""
+    title, _, housings = one.model.title.partition(", ")
+    words = _IN_WORDS.get(title, title)
+    return f"{words} with {_OF_HOUSINGS.get(housings, housings)}" if housings else words
+
+
+def _name(one: LevelResult, top: LevelResult) -> str:
+    """A level in a sentence: "the full solid-element model", "a Timoshenko beam model"."""
+    if one.model.level == 0:
+        return _plain(one)
+    article = "the" if one is top else "an" if _plain(one)[0] in "aeiou" else "a"
+    return f"{article} {_plain(one)}"
 
 
 def _verdict(result: AdviseResult, asked: str) -> str:
@@ -66,25 +89,34 @@ def _verdict(result: AdviseResult, asked: str) -> str:
     top, share = advice.top, f"{100 * advice.tolerance:g}\u00a0%"
     own = f"{formatted(100 * top.estimate, 2)}\u00a0%"
     if chosen is None:
-        return f"No model is known to give {asked} within {share}: {_name(top)} may err by {own}."
+        return (
+            f"No model is known to give {asked} within {share}: on this mesh "
+            f"{_name(top, top)} may err by {own}."
+        )
     if chosen is top:
         nearest = min(_below(result), key=lambda one: one.error, default=None)
-        verdict = f"Only {_name(top)} gives {asked} within {share}"
+        verdict = f"Only {_name(top, top)} gives {asked} within {share}"
         if nearest is None:
-            return f"{verdict}, to {own}."
-        return f"{verdict}; {_name(nearest)} may err by {_most(nearest, top)}."
-    name = _name(chosen)
+            return f"{verdict}: its error is at most {own}."
+        return f"{verdict}; {_name(nearest, top)} may err by {_most(nearest, top)}."
+    name = _name(chosen, top)
+    name = f"{name[0].upper()}{name[1:]}"
     if chosen.error < _ROUND_OFF:
-        error = "the best model agrees to round-off"
-    else:
-        error = f"its error is at most {_most(chosen, top)}"
-    return f"{name[0].upper()}{name[1:]} is enough for {asked}: {error}, {share} allowed."
+        return f"{name} gives {asked}: {_name(top, top)} gives the same ({share} error allowed)."
+    return f"{name} is enough: it gives {asked} within {_most(chosen, top)} ({share} allowed)."
 
 
 def _most(one: LevelResult, top: LevelResult) -> str:
-    """The largest error that a level may have: its difference from the last, and the last's own."""
+    """The largest error that a level may have, in words."""
+    return f"{formatted(_percent(one, top), 2)}\u00a0%"
+
+
+def _percent(one: LevelResult, top: LevelResult) -> float:
+    """The largest error of a level [%]: its difference from the last, and the last's own."""
+    if one is top:
+        return 100.0 * top.estimate
     own = 0.0 if one.estimate == 0.0 else top.estimate  # where statics decides, a level is exact
-    return f"{formatted(100 * (one.error + own), 2)}\u00a0%"
+    return 100.0 * (one.error + own)
 
 
 def _below(result: AdviseResult) -> list[LevelResult]:
@@ -95,18 +127,21 @@ def _below(result: AdviseResult) -> list[LevelResult]:
 def _error(
     page: Page, one: LevelResult, top: LevelResult, tolerance: float | None = None
 ) -> KeyFigure:
-    """Error of a level in percent, of the last one its own; judged where a tolerance is given."""
-    name = f"error of {_name(one)} [%]"
-    value = 100.0 * (top.estimate if one is top else one.error)
-    band = None if one is top else 100.0 * top.estimate
+    """Largest error of a level in percent; judged where a tolerance is given."""
+    name, value = f"largest error, {_plain(one)} [%]", _percent(one, top)
     if tolerance is None:
-        return page.value(name, value, band)
-    return page.value(name, value, band, at_most=100.0 * tolerance)
+        return page.value(name, value)
+    return page.value(name, value, at_most=100.0 * tolerance)
 
 
 def _others(result: AdviseResult, known: LevelResult) -> list[LevelResult]:
-    """Levels beside the one that is enough: the next cheaper ones, or those above it."""
+    """Levels beside the one that is enough: the next cheaper ones, or those above it.
+
+    Beside the last one those that are nearest to it.
+    """
     results = [one for one in _below(result) if one is not known]
+    if known is result.advice.top:
+        return sorted(results, key=lambda one: one.error)[:MOST_OTHERS]
     place = result.advice.results.index(known)
     below = [one for one in reversed(results) if result.advice.results.index(one) < place]
     above = [one for one in results if result.advice.results.index(one) > place]
@@ -120,16 +155,27 @@ def _value(page: Page, result: AdviseResult) -> list[KeyFigure]:
         return []
     value = float(advice.top.values[0])
     prefix, size = ("G", 1e9) if abs(value) >= 1e9 else ("M", 1e6)
-    name = f"stiffness by {_name(advice.top)} [{prefix}{advice.quantity.unit}]"
+    name = f"stiffness, {_plain(advice.top)} [{prefix}{advice.quantity.unit}]"
     return [page.value(name, value / size, abs(value) / size * advice.top.estimate)]
+
+
+def _in_brackets(neglected: str) -> str:
+    """What a level neglects, its consequence in brackets: "housings that give (they are rigid)"."""
+    what, _, consequence = neglected.partition(": ")
+    return f"{what} ({consequence})" if consequence else what
 
 
 def _cautions(result: AdviseResult, known: LevelResult) -> list[str]:
     """What the level neglects, and what the band of the last one rests on."""
     cautions = []
     if known.model.neglects and known is not result.advice.top:
-        cautions.append(f"It neglects {', '.join(known.model.neglects)}.")
+        untold = [one for one in known.model.neglects if one.startswith("cannot tell")]
+        neglects = [_in_brackets(one) for one in known.model.neglects if one not in untold]
+        cautions += [f"The model neglects: {'; '.join(neglects)}."] if neglects else []
+        cautions += [f"It {one.replace('_', ' ')}." for one in untold]
     band = result.advice.top.band
     if band is not None:
-        cautions.append(f"On the error of the last level: {band.sentence()}.")
+        cautions.append(
+            f"On the error of {_name(result.advice.top, result.advice.top)}: {band.sentence()}."
+        )
     return cautions

@@ -216,14 +216,14 @@ def answer(page: Page, largest: float, milliseconds: float) -> None:
         ("stepped: torsion at the seat", "torsion at the seat, stepped", "GN m/rad"),
     )
     page.answer(
-        "Is the meridian of a shaft between its seats as good as solids?",
-        f"{'All' if agree else 'Not all'} {len(terms)} stiffnesses of the meridian agree with "
-        f"solids within their bands, {largest:.2g} % apart at most, after "
-        f"{value_text(float(f'{milliseconds / 1e3:.2g}'), 's')}.",
+        "Is an axisymmetric model of a shaft between its seats as accurate as a solid one?",
+        f"{'All' if agree else 'Not all'} {len(terms)} stiffnesses of the axisymmetric model agree "
+        f"with the solid model within its uncertainty; they differ by {largest:.2g}\u00a0% at "
+        "most.",
         [
-            page.value("largest difference from the solids' limit [%]", largest),
+            page.value("largest difference from the converged solid model [%]", largest),
             page.value("stiffnesses compared", len(terms)),
-            page.value("time of the meridian [ms]", milliseconds),
+            page.value("computing time, axisymmetric model [ms]", milliseconds),
             *(
                 with_range(page.judged(quantity, name, "solids", unit=unit))
                 for quantity, name, unit in shown_first
@@ -231,9 +231,9 @@ def answer(page: Page, largest: float, milliseconds: float) -> None:
         ],
         hero=HERO,
         cautions=[
-            "Stress is singular at the ends of a rigid seat: solids converge slowly, and their "
-            "bands are what limits the comparison.",
-            "Differences are relative to the root of both diagonal terms.",
+            "Stress is singular at the ends of a rigid seat: the solid model converges slowly, "
+            "and its uncertainty limits the comparison.",
+            "A difference of K_ij is relative to the square root of K_ii K_jj.",
         ],
     )
 

@@ -127,14 +127,17 @@ def answer(page: Page, finest: dict[str, Record], width: float) -> None:
     ]
     inside = all(figure.status == "good" for figure in stiffness)
     page.answer(
-        "How accurate is the torsional stiffness of a stepped shaft by its meridian?",
-        f"The meridian is {'within' if inside else 'not within'} two bounds that are "
-        f"{value_text(100 * width, '%')} apart, {value_text(100 * error, '%')} from their middle.",
+        "How accurate is an axisymmetric model's torsional stiffness of a stepped shaft?",
+        "The axisymmetric model's torsional stiffness lies "
+        f"{'between' if inside else 'not between'} a lower and an upper bound that are only "
+        f"{value_text(100 * width, '%')} apart.",
         [
             page.value("largest difference from the middle of the bounds [%]", 100 * error),
-            page.value("distance of the bounds [%]", 100 * width),
+            page.value("distance between the bounds [%]", 100 * width),
             *stiffness,
-            page.value("unknowns of the meridian", max(row["nodes"] for row in finest.values())),
+            page.value(
+                "unknowns of the axisymmetric model", max(row["nodes"] for row in finest.values())
+            ),
         ],
         hero=HERO,
         cautions=["Ends are rigid; the shaft and its step are chosen, not those of a turbine."],

@@ -79,9 +79,9 @@ def answer(page: Page, found: list[Compared]) -> None:
     worst_bending = max(found, key=lambda one: one.changes[bending].beam)
     page.answer(
         "For which shafts is a beam enough?",
-        f"Beams are within {100 * BEARABLE:g}\u00a0% in bending for {len(enough[bending])} of "
-        f"{len(found)} shafts, in torsion for {len(enough[torsion])}; the worst errs by "
-        f"{formatted(100 * worst_bending.changes[bending].beam, 2)}\u00a0% "
+        f"A beam is accurate within {100 * BEARABLE:g}\u00a0% in bending for "
+        f"{len(enough[bending])} of {len(found)} shafts; its largest error is "
+        f"{formatted(100 * worst_bending.changes[bending].beam, 3)}\u00a0% "
         f"({titled(worst_bending.scene)}).",
         [
             *(
@@ -105,12 +105,12 @@ def answer(page: Page, found: list[Compared]) -> None:
                 f"largest error in torsion, {titled(worst.scene)} [%]",
                 100 * worst.changes[torsion].beam,
             ),
-            page.value("shafts whose housings do more than beam theory", supported_more(found)),
+            page.value("shafts whose housings matter more than beam theory", supported_more(found)),
         ],
         hero=hero(bending),
         cautions=[
-            "Errors are of the shaft's theory alone: supports are the same in both, and may do "
-            "more.",
+            "Errors are those of beam theory alone: the supports are the same in both models, and "
+            "may matter more.",
             *(
                 [f"In bending a beam is not enough for {', '.join(map(titled, poor))}."]
                 if poor

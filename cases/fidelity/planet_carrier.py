@@ -144,14 +144,14 @@ def answer(
         "wind-up of the pins at the rated torque", "wind-up of the pins at rated torque"
     )
     solid = compared.chosen == len(compared.ladder.models) - 1
-    beams = f"beams are {abs(off[0]):.2g}\u00a0% {'stiffer' if off[0] > 0.0 else 'softer'}"
+    beams = f"beams are {abs(off[0]):.2g}\u00a0% too {'stiff' if off[0] > 0.0 else 'soft'}"
     if compared.own > TOLERANCE:
-        which = f"but the solid is known to {100 * compared.own:.2g}\u00a0% only"
+        which = f"but the solid model itself is uncertain by ±\u00a0{100 * compared.own:.2g}\u00a0%"
     else:
-        which = "not enough" if solid else "which is enough"
+        which = "which is not enough" if solid else "which is enough"
     page.answer(
         "How far does a planet carrier wind up, and are beams enough for it?",
-        f"The pins wind up by {certain_value(wound)} at rated torque; {beams}, {which}.",
+        f"At rated torque the planet pins wind up by {certain_value(wound)}; {beams}, {which}.",
         [
             wound,
             page.value("tilt of a pin over the face width [µm]", skew, abs(skew) * tilt_band),
@@ -163,12 +163,12 @@ def answer(
                 by="allowed",
             ),
             page.value("error of beams in tilt [%]", abs(off[1])),
-            page.value("time of the solid [s]", compared.ladder.seconds[-1]),
+            page.value("computing time of the solid model [s]", compared.ladder.seconds[-1]),
         ],
         hero=compared.caption,
         cautions=[
-            "The cheeks bend where hub, webs and pins stand on them, and only the solid knows "
-            "that; cheeks and webs are assumed.",
+            "The cheeks bend where hub, webs and pins meet them, which only the solid model shows; "
+            "dimensions of cheeks and webs are assumed.",
         ],
     )
 

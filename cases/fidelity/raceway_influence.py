@@ -141,9 +141,9 @@ def _answer(page: Page, free: FreeRing, pressed: dict[str, Pressed], count: int)
     feet = [one for name, one in pressed.items() if "feet" in name]
     rigid = pressed["rigid ring"].factor
     page.answer(
-        "How does a raceway that gives way share a load among its rollers?",
-        f"On a ring on two feet the most loaded roller carries {feet[0].factor:.2f} times "
-        f"the mean, {feet[0].factor / rigid:.2g} times that of a rigid ring.",
+        "How does a flexible raceway share a load among its rollers?",
+        f"In a ring held on two feet the most loaded roller carries {feet[0].factor:.2f} times the "
+        f"mean roller force; in a rigid ring, {rigid:.2f} times.",
         [
             page.value(
                 "most loaded roller over the mean, ring on two feet",
@@ -152,12 +152,14 @@ def _answer(page: Page, free: FreeRing, pressed: dict[str, Pressed], count: int)
                 by="rigid ring",
             ),
             page.value(
-                f"the same with {HOUSINGS[-1] - OUTSIDE:.2f} m of housing around it",
+                f"the same with {HOUSINGS[-1] - OUTSIDE:.2f} m of housing around the ring",
                 feet[-1].factor,
                 beside=rigid,
                 by="rigid ring",
             ),
-            page.value("its load, ring on two feet [kN]", feet[0].forces.max() / 1e3),
+            page.value(
+                "load of the most loaded roller, ring on two feet [kN]", feet[0].forces.max() / 1e3
+            ),
             page.judged(
                 "rigid ring, exponent 1.11: most loaded roller times their number over load",
                 "most loaded roller over the mean, rigid ring, line contact",

@@ -173,7 +173,7 @@ def titled(scene: str) -> str:
 
 def hero(key: str) -> str:
     """Caption of the bars of one quantity, by key of `QUANTITIES`."""
-    return f"{QUANTITIES[key]}; beside each scene its length over its largest diameter"
+    return f"{QUANTITIES[key]}; beside each name its length over its largest diameter"
 
 
 def _bars(key: str, found: Sequence[Compared]) -> Chart:

@@ -129,26 +129,34 @@ def _answer(page: Page, found: Study, top: Slopes) -> None:
     held = 0.9 * low <= exact[MOMENT] <= 1.1 * high  # as the checks ask
     names = {MOMENT: "bearing's moment", hub: "hub's stiffness"}
     page.answer(
-        "Can a beam tell how uncertain inputs make the moment on a main bearing?",
-        f"The moment scatters by {exact[MOMENT]:.2g} % by solids; the beam's bounds "
-        f"{'hold that' if held else 'do not hold that'}, {low:.2g} and {high:.2g} %.",
+        "Can a beam model tell how uncertain the moment on a main bearing is?",
+        f"By the solid model the bearing's moment has a standard deviation of "
+        f"{exact[MOMENT]:.2g}\u00a0%; the beam's two estimates, {low:.2g} and {high:.2g}\u00a0%, "
+        f"{'bracket it' if held else 'do not bracket it'}.",
         [
             figure
             for q, name in names.items()
             for figure in (
-                page.value(f"standard deviation of the {name}, solids [%]", exact[q]),
+                page.value(f"standard deviation of the {name}, solid model [%]", exact[q]),
                 page.value(
-                    f"{name} by a beam, faces in shape [%]", stiff[q], beside=exact[q], by="solids"
+                    f"{name}, beam, seat faces stay plane [%]",
+                    stiff[q],
+                    beside=exact[q],
+                    by="solid model",
                 ),
                 page.value(
-                    f"{name} by a beam, faces on average [%]", soft[q], beside=exact[q], by="solids"
+                    f"{name}, beam, seat faces plane on average [%]",
+                    soft[q],
+                    beside=exact[q],
+                    by="solid model",
                 ),
             )
         ],
         hero=HERO,
         cautions=[
-            "Spreads of inputs are in part assumed; only those that both levels know are counted.",
-            "A beam gives ring and housing another share of the flexibility than solids do.",
+            "Scatter of the inputs is in part assumed; only inputs of both models are counted.",
+            "In a beam model, ring and housing have another share of the flexibility than in a "
+            "solid one.",
         ],
     )
     off = {q: 100 * (stiff[q] / exact[q] - 1.0) for q in (hub, MOMENT)}

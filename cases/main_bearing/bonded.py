@@ -213,7 +213,7 @@ def answer(page: Page, work: Worked) -> None:
     force, spring = "force on the bearing per N at the hub", "error of the torsional-spring beam"
     page.found(f"{force} [N/N]", float(reaction[2, 2]), work.forces[0]["± FE"])
     page.found(f"{spring} [%]", spring_error)
-    up = page.judged(force, "force on the bearing, per force up at the hub")
+    up = page.judged(force, "force on the bearing per vertical hub force")
     verdict, beside = verdict_of(page, work, up, spring_error)
     page.answer(
         "How much of a hub load does a bonded main bearing carry, and does a beam show it?",
@@ -228,17 +228,22 @@ def answer(page: Page, work: Worked) -> None:
                 by="solids",
             ),
             page.value(
-                "moment on the bearing, per force up at the hub [m]",
+                "moment on the bearing per vertical hub force [m]",
                 abs(float(reaction[4, 2])),
                 work.shares[1]["± FE"],
             ),
-            page.value("error of the beam on K_R [%]", spring_error, at_most=2.0, by="asked"),
-            page.value("error of the beam on the 6x6 stiffness [%]", matrix_error),
+            page.value(
+                "error of the beam with torsional spring K_R [%]",
+                spring_error,
+                at_most=2.0,
+                by="asked",
+            ),
+            page.value("error of the beam with the full 6x6 stiffness [%]", matrix_error),
         ],
         hero=shown.deformed(work.pictures),
         cautions=[
-            "No planar beam has what thrust does: it bends the bearing, since the housing stands "
-            "on its foot, below the shaft.",
+            "Thrust also bends the bearing, since the housing stands on its foot below the shaft: "
+            "no planar beam shows that.",
         ],
     )
     page.say(
@@ -262,19 +267,15 @@ def verdict_of(
     """What a hub force puts on the bearing, in words; the calibrated housing's beside it."""
     pinned_error = 100 * abs(work.pinned[2, 2] / up.value - 1)
     of_up = value_text(up.value, "kN", up.band, False)
-    if work.other is None:
-        return (
-            f"A hub force of 1\u00a0kN up puts {of_up} on the bearing; a beam on K_R errs by "
-            f"{spring_error:.2g} %, a pinned beam by {pinned_error:.2g} %.",
-            [],
-        )
-    there = calibrated.force_up(work.other)
-    of_pinned = 100 * abs(work.pinned[2, 2] / there - 1)
-    return (
-        f"1\u00a0kN up at the hub puts {of_up} on the bearing, {value_text(there, 'kN')} with the "
-        f"thesis's K_R; a pinned beam errs by {pinned_error:.2g} and {of_pinned:.2g} %.",
-        [page.value("the same in the calibrated housing [N/N]", there)],
+    said = (
+        f"A vertical hub force of 1\u00a0kN loads the bonded bearing with {of_up}; a beam on "
+        f"torsional springs errs by {spring_error:.2g}\u00a0%, a pinned beam by "
+        f"{pinned_error:.2g}\u00a0%."
     )
+    if work.other is None:
+        return said, []
+    there = calibrated.force_up(work.other)
+    return said, [page.value("the same in the housing with the thesis's K_R [N/N]", there)]
 
 
 def reactions_section(page: Page, work: Worked) -> None:

@@ -364,11 +364,11 @@ def answer(page: Page, work: Worked) -> None:
     above = 100.0 * float((stresses > PROOF / 1e6).mean())
     page.answer(
         "Which housing would have the torsional stiffness K_R that the thesis gives?",
-        "Only a plate on a fixed underside has 145 and 392\u00a0MN\u00a0m/rad: "
-        f"{widths.min():.3f} to {widths.max():.3f}\u00a0m wide along the shaft; "
-        f"{above:.0f}\u00a0% of such housings yield at 1\u00a0MN\u00a0m.",
+        f"The thesis's K_R needs a plate-like housing only {widths.min():.3f} to "
+        f"{widths.max():.3f}\u00a0m wide along the shaft; {above:.0f}\u00a0% of such housings "
+        "would yield under 1\u00a0MN\u00a0m.",
         [
-            page.value("least width along the shaft [m]", float(widths.min())),
+            page.value("smallest width along the shaft [m]", float(widths.min())),
             page.value("largest width along the shaft [m]", float(widths.max())),
             *(
                 page.value(
@@ -388,8 +388,8 @@ def answer(page: Page, work: Worked) -> None:
         ],
         hero=HERO,
         cautions=[
-            "Two values cannot determine five dimensions: nothing here shows that the thesis's "
-            "housing was one of these.",
+            "Two values of K_R cannot determine five dimensions: the thesis's housing need not be "
+            "one of these.",
             "K_R is read from four nodes, as in the thesis; other estimators give other housings.",
         ],
     )

@@ -116,12 +116,12 @@ def answer(page: Page, bonded: StudyResult, hero: str) -> None:
     K_R = {row["plane"]: float(row["averaged seat [MN m/rad]"]) for row in seat_rows(bonded)}
     page.answer(
         "Is a beam with a torsional spring enough for a bonded main bearing?",
-        f"{'Yes' if enough else 'It is not'}: with K_R of the housing alone the beam errs by "
-        f"{sprung.mean_error_percent:.2g} % on average (thesis {of_sprung[0]:g} %), pinned by "
-        f"{pinned.mean_error_percent:.3g} % (thesis {of_pinned[0]:g} %).",
+        f"{'Yes, for this housing' if enough else 'No, it is not'}: a beam with its K_R as "
+        f"spring has a mean error of {sprung.mean_error_percent:.2g}\u00a0% (thesis "
+        f"{of_sprung[0]:g}\u00a0%), a pinned beam {pinned.mean_error_percent:.3g}\u00a0%.",
         [
             page.value(
-                "mean error, beam on K_R of the unit [%]",
+                "mean error, beam with the housing's K_R [%]",
                 sprung.mean_error_percent,
                 beside=of_sprung[0],
                 by="thesis",
@@ -143,14 +143,14 @@ def answer(page: Page, bonded: StudyResult, hero: str) -> None:
             ),
             page.judged(
                 f"{ALONE}, against bonded FE, in the study: mean error of the resultant",
-                "the same error against what is asked",
+                "mean error, beam with the housing's K_R, against what is asked",
                 "asked",
             ),
         ],
         hero=hero,
         cautions=[
             "Hub loads and housing of the thesis are not public: its numbers stand beside ours "
-            "for orientation.",
+            "for orientation. For a housing with the thesis's K_R see main_bearing/rmse.",
         ],
         claim="holds" if enough else "does not hold",
     )

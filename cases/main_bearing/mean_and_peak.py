@@ -170,19 +170,22 @@ def answer(page: Page, found: dict[str, Quantity], agree: list[int], less: Float
     always, mostly = sum(a == 100 for a in agree), sum(a > 50 for a in agree)
     holds = always == len(agree)
     page.answer(
-        "Does the thesis say rightly what wind, turbulence and shear do to main-bearing loads?",
-        f"All {always} statements of the thesis on order hold."
+        "Is the thesis right about what wind, turbulence and shear do to main-bearing loads?",
+        f"All {always} statements of the thesis on which loads are larger hold."
         if holds
-        else f"Of {len(agree)} statements of the thesis on order, {always} hold everywhere, "
-        f"{mostly - always} mostly, {len(agree) - mostly} do not; tilting stiffness "
-        f"lowers the peak force by {less[LOW]:.0f} %.",
+        else f"Of the thesis's {len(agree)} statements on which loads are larger, {always} hold "
+        f"in all groups of histories, {mostly - always} in most, and {len(agree) - mostly} do not.",
         [
-            page.value("statements that hold everywhere", always, beside=len(agree), by="all"),
+            page.value("statements that hold in all groups", always, beside=len(agree), by="all"),
             page.value("statements that hold in most groups", mostly, beside=len(agree), by="all"),
-            page.value("taken off the peak force by tilting stiffness, low shear [%]", less[LOW]),
-            page.value("taken off the peak force by tilting stiffness, high shear [%]", less[HIGH]),
             page.value(
-                "change of the mean force from low to high shear, spherical [%]",
+                "reduction of the peak force by tilting stiffness, low shear [%]", less[LOW]
+            ),
+            page.value(
+                "reduction of the peak force by tilting stiffness, high shear [%]", less[HIGH]
+            ),
+            page.value(
+                "change of the mean force from low to high shear, spherical bearing [%]",
                 found["DSRB, radial force, mean"].step(SHEAR),
             ),
             page.value(
@@ -192,8 +195,8 @@ def answer(page: Page, found: dict[str, Quantity], agree: list[int], less: Float
         ],
         hero=HERO,
         cautions=[
-            "Ours are of a surrogate turbine whose pitch is held in a history; the thesis's hub "
-            "loads are not public.",
+            "The loads are those of a surrogate turbine with constant pitch in each history; the "
+            "thesis's hub loads are not public.",
             "DSRB is a spherical bearing, DTRB a double-row tapered one.",
         ],
         claim="holds" if holds else "holds in part",

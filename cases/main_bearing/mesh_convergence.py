@@ -158,18 +158,18 @@ def judge(page: Page, one: Converged) -> None:
         ("K_R horizontal, averaged seat [MN m/rad]", "error of K_R, horizontal plane"),
     )
     page.answer(
-        "How fine a mesh do main-bearing reactions and K_R need?",
-        f"With {formatted(one.unknowns[-2])} unknowns reactions are within "
-        f"{max_error['at the']:.2g} % and K_R within {max_error['K_R']:.2g} % of their limits at "
-        "element size zero.",
+        "How fine a mesh do main-bearing reactions and the torsional stiffness K_R need?",
+        f"By extrapolation, a mesh of {formatted(one.unknowns[-2])} unknowns gives bearing "
+        f"reactions within {max_error['at the']:.2g}\u00a0% and K_R within "
+        f"{max_error['K_R']:.2g}\u00a0% of those of an infinitely fine one.",
         [
             page.judged(f"{quantity}: estimated error of sizes x {one.last:g}", name)
             for quantity, name in shown_first
         ],
         hero=HERO,
         cautions=[
-            "Limits are extrapolated at first order, since stress is singular along the edges of "
-            "ring and housing; bands hold for lower orders, too.",
+            "The extrapolation is of first order, since stress is singular along the edges of ring "
+            "and housing; the uncertainties (±) cover lower orders, too.",
         ],
     )
     page.say(

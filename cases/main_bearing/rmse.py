@@ -32,6 +32,7 @@ from fe_drivetrain.comparison import weighted_statistics
 from fe_drivetrain.drivetrain_file import Scene
 from fe_drivetrain.export import stiffness_matrix, write_stiffness_json
 from fe_drivetrain.report import Image, Solid, Text, drawing_ready
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.beam import beam_of_scene, main_bearing_beam, shaft
 from fe_drivetrain.shafts.response import bearing_unit_stiffness
@@ -261,8 +262,9 @@ def answer(
     enough = mean_error[third] <= 2.0
     page.answer(
         "Which beam is enough for the forces on a bonded main bearing?",
-        f"{'A' if enough else 'Not even a'} torsional-spring beam{' is enough' * enough}: "
-        f"{mean_error[third]:.2g} % mean error; a pinned beam errs by {mean_error[second]:.3g} %.",
+        f"A beam with torsional springs is {'' if enough else 'not '}accurate enough: its mean "
+        f"error is {mean_error[third]:.2g}\u00a0%, that of a pinned beam "
+        f"{mean_error[second]:.3g}\u00a0%.",
         [
             *(
                 page.value(f"mean error, {name} [%]", mean_error[label], error_band.get(label))
@@ -289,13 +291,13 @@ def answer_of_both(page: Page, errors: dict[str, calibrated.Errors], work: Worke
     _, second, third = PUBLISHED
     generic, other = errors.values()
     holds = other.as_thesis[0] <= calibrated.ENOUGH
+    stated = "about the thesis's" if holds else "not by the thesis's"
     in_part = min(one.sprung[0] for one in errors.values()) <= calibrated.ENOUGH
     page.answer(
         "Which beam is enough for the forces on a bonded main bearing?",
-        f"The thesis's {PUBLISHED[third][0]:g}\u00a0% {'holds' if holds else 'does not hold'}: on "
-        f"its K_R torsional springs err by {other.as_thesis[0]:.2g}\u00a0% (generic housing "
-        f"{generic.as_thesis[0]:.2g}\u00a0%), a pinned beam by {other.pinned[0]:.3g}\u00a0% "
-        f"({generic.pinned[0]:.3g}\u00a0%).",
+        "With the thesis's torsional stiffness K_R a beam on springs errs by "
+        f"{formatted(other.as_thesis[0], 3)}\u00a0% on average, "
+        f"{stated} {PUBLISHED[third][0]:g}\u00a0%; a pinned beam by {other.pinned[0]:.3g}\u00a0%.",
         [
             *(
                 page.value(
@@ -324,10 +326,10 @@ def answer_of_both(page: Page, errors: dict[str, calibrated.Errors], work: Worke
         ],
         hero=charts.series_caption(work.hub, "bonded", "vertical", "Fz"),
         cautions=[
-            "Hub loads of the thesis, and its housing but for K_R, are not public: what thrust "
+            "Of the thesis's housing only K_R is public, and its hub loads are not: what thrust "
             "does to the bearing depends on the housing's shape.",
-            f"K_R is by {calibrated.THESIS_WAY} of the housing, as the thesis has it; by the "
-            "averaged seat stands below.",
+            f"K_R is read from {calibrated.THESIS_WAY} of the housing, as in the thesis; results "
+            "with the average over the seat stand below.",
             "The mean error leaves out samples with a reference below 0.1 % of its rms.",
         ],
         claim="holds" if holds else "holds in part" if in_part else "does not hold",

@@ -283,21 +283,30 @@ def answer(page: Page, work: Worked, centre: Mapping[str, float]) -> None:
     wrong = scatter.value > 100.0 * secant_stiffness.SCATTERS
     page.answer(
         "Is one torsional stiffness K_R enough to describe a main bearing in its housing?",
-        f"{'A single K_R does not hold' if wrong else 'A single K_R holds'} at the shaft's axis: "
-        f"it scatters by {certain_value(scatter)} over load cases; {-centre['library']:.2f}\u00a0m "
-        f"below, by {certain_value(remaining)}.",
+        f"One K_R at the shaft's axis is {'not enough' if wrong else 'enough'}: it varies by "
+        f"{certain_value(scatter)} between load cases; taken about a point "
+        f"{-centre['library']:.2f}\u00a0m below, by {certain_value(remaining)}.",
         [
             page.judged(f"{TITLES['library']}: {lean}", "scatter of K_R at the axis", "predicted"),
-            page.judged(f"{TITLES['library']}: {at_centre}", "scatter at the elastic centre"),
-            page.judged(f"{TITLES['tall']}: {lean}", "scatter at the axis, tall", "predicted"),
-            page.judged(f"{TITLES['tall']}: {at_centre}", "scatter at the elastic centre, tall"),
+            page.judged(
+                f"{TITLES['library']}: {at_centre}", "scatter of K_R at the elastic centre"
+            ),
+            page.judged(
+                f"{TITLES['tall']}: {lean}",
+                "scatter of K_R at the axis, tall pedestal",
+                "predicted",
+            ),
+            page.judged(
+                f"{TITLES['tall']}: {at_centre}",
+                "scatter of K_R at the elastic centre, tall pedestal",
+            ),
             page.value("error of My by a single spring, tall pedestal [%]", tall[SINGLE]["My"]),
             page.value("error of My with the coupling, tall pedestal [%]", tall[LEAN]["My"]),
         ],
         hero=HERO,
         cautions=[
-            f"Tall is {TITLES['tall']}; the elastic centre is where thrust does not tilt the "
-            "housing.",
+            "The elastic centre is the point below the axis where thrust does not tilt the "
+            f"housing; tall means {TITLES['tall']}.",
         ],
         claim="does not hold" if wrong else "holds",
     )

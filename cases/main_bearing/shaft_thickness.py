@@ -246,13 +246,12 @@ def answer(page: Page, rows: list[Record], there: float | None) -> None:
     thinnest = {row["bearing"]: row for row in rows}
     wall, tapered = rows[-1]["wall [%]"], thinnest["DTRB"]
     little = largest < LITTLE
-    of_there = "" if there is None else f" (thesis's K_R {there:.2g}\u00a0%)"
-    name = "mean change of the force, calibrated housing [%]"
+    name = "mean change of the force, housing with the thesis's K_R [%]"
     beside = [] if there is None else [page.value(name, there)]
     page.answer(
         "What does a bored shaft change in the reactions of its main bearing?",
-        f"A bore to {wall}\u00a0% of the wall changes a bonded bearing's force by "
-        f"{tapered[CHANGE]:.2g}\u00a0%{of_there}, a spherical one's not, "
+        f"A shaft bored to {wall}\u00a0% wall thickness changes the bonded bearing's force by "
+        f"{tapered[CHANGE]:.2g}\u00a0% and a spherical bearing's not at all, "
         f"{'as the thesis finds' if little else 'contrary to the thesis'}.",
         [
             page.value(
@@ -265,8 +264,8 @@ def answer(page: Page, rows: list[Record], there: float | None) -> None:
             *beside,
             page.value("mean force, bonded bearing [kN]", tapered["mean [kN]"]),
             page.value("mean force, spherical bearing [kN]", thinnest["DSRB"]["mean [kN]"]),
-            page.value("more deflection of the hub, spherical bearing [%]", softer[0]),
-            page.value("more deflection of the hub, bonded bearing [%]", softer[1]),
+            page.value("increase of the hub's deflection, spherical bearing [%]", softer[0]),
+            page.value("increase of the hub's deflection, bonded bearing [%]", softer[1]),
         ],
         hero=caption("DTRB"),
         cautions=["Self-weight, which a bore reduces, is left out here as in the thesis."],

@@ -258,8 +258,8 @@ def answer(page: Page, work: Worked) -> None:
     under = f"{quantity} under {deflection['hub load']} [{unit}"
     page.answer(
         "Which quantities of a shaft on a spherical main bearing need a model of solids?",
-        "Forces need none: statics decide them. In deflection and slope a beam of the bare shaft "
-        f"errs by {softer:.2g} % at most.",
+        "Only deflection and slope need one: a beam of the bare shaft errs there by up to "
+        f"{softer:.2g}\u00a0%. Bearing forces follow from statics alone.",
         [
             page.judged(bare, "largest error of the bare beam"),
             page.value(under, deflection[FORMS[0]], deflection["± sliding"]),
@@ -282,9 +282,9 @@ def answer(page: Page, work: Worked) -> None:
         ],
         hero=HERO,
         cautions=[
-            "A beam has no ring that stiffens the seat; with the ring as a section of the shaft it "
-            "is too stiff.",
-            "That reactions are those of statics says nothing about the model of solids.",
+            "The bare beam lacks the bearing ring, which stiffens the seat; with the ring as part "
+            "of the shaft it is too stiff.",
+            "That forces agree with statics does not validate the solid model.",
         ],
     )
     page.say(

@@ -5,7 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.main_bearing import bands, bearing_scenes, calibrated, shown
 from fe_drivetrain.report import bars
-from fe_drivetrain.report.number_text import certain_value
+from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.shafts.response import PLANES
 from fe_drivetrain.studies import Assembly, SeatStiffness
@@ -104,9 +104,9 @@ def answer(page: Page, tilt: SeatStiffness, series: bands.Series) -> None:
     vertical, horizontal = (certain_value(one) for one in found)
     spreads = {plane: tilt.spread(plane) for plane in tilt.by_plane}
     page.answer(
-        "How stiff against tilting are a main bearing and its housing?",
-        f"K_R is {vertical} in the vertical and {horizontal} in the horizontal plane; estimators "
-        f"differ by {max(spreads.values()):.0f} %.",
+        "How stiff against tilting (K_R) are a main bearing and its housing?",
+        f"K_R is {vertical} in the vertical and {horizontal} in the horizontal plane; "
+        f"three ways to read it differ by {max(spreads.values()):.0f} %.",
         [
             *found,
             *(
@@ -126,14 +126,17 @@ def answer_of_both(page: Page, found: dict[str, calibrated.Housed], tilt: SeatSt
     """K_R of both housings as the thesis finds it, and how far the estimators spread."""
     generic = found[calibrated.GENERIC]
     times = max(generic.K_R[plane] / shown.PUBLISHED[plane] for plane in generic.K_R)
-    pairs = [" and ".join(f"{one.K_R[p]:.0f}" for p in one.K_R) for one in found.values()]
+    vertical, horizontal = (
+        value_text(generic.K_R[plane], "MN m/rad", generic.band(p), False)
+        for p, plane in enumerate(generic.K_R)
+    )
     spread = max(tilt.spread(plane) for plane in tilt.by_plane)
     for p, plane in enumerate(generic.K_R):
         page.found(f"K_R, {plane} plane [MN m/rad]", generic.K_R[plane], generic.band(p))
     page.answer(
-        "How stiff against tilting are a main bearing and its housing?",
-        f"K_R is {pairs[0]}\u00a0MN\u00a0m/rad in the generic housing, {times:.1f} times the "
-        f"thesis's, {pairs[1]} in the calibrated one; estimators differ by {spread:.0f}\u00a0%.",
+        "How stiff against tilting (K_R) are a main bearing and its housing?",
+        f"The generic housing's K_R is {vertical} vertically, {horizontal} horizontally, up to "
+        f"{times:.1f} times the thesis's; three ways to read it differ by {spread:.0f}\u00a0%.",
         [
             *(
                 page.value(
@@ -146,14 +149,14 @@ def answer_of_both(page: Page, found: dict[str, calibrated.Housed], tilt: SeatSt
                 for name, one in found.items()
                 for p, plane in enumerate(one.K_R)
             ),
-            page.value("spread of three estimators, generic housing [%]", spread),
+            page.value("spread of three ways to read K_R, generic housing [%]", spread),
         ],
         hero=HERO,
         cautions=[
-            "The thesis does not state its housing's dimensions: the calibrated one is one of many "
-            "with its K_R.",
-            f"Values are by {calibrated.THESIS_WAY}, as the thesis's; which estimator a beam is "
-            "given decides its reactions.",
+            "The thesis does not state its housing's dimensions: the calibrated housing is one of "
+            "many with the thesis's K_R.",
+            f"K_R is read from {calibrated.THESIS_WAY}, as in the thesis; the way of reading "
+            "decides a beam's reactions.",
         ],
     )
 

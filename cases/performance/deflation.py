@@ -253,10 +253,11 @@ def answer(page: Page, rows: list[Record]) -> None:
     wins = sorted({row["ratio"] for row in mine if row["time with over without"] < 1.0})
     jacobi = [row for row in rows if row["preconditioner"] == JACOBI and row["ratio"] > 1.0]
     page.answer(
-        "Is it worth while to deflate rigid motions?",
-        f"Beside multigrid it saves {saved(alike)} of {alike['iterations without']} iterations of "
-        f"equally stiff bodies, {saved(most)} of {most['iterations without']} of bodies "
-        f"{most['ratio']:,.0f} times as stiff as their neighbours.",
+        "Is it worth removing rigid-body motions from the solver's iterations (deflation)?",
+        f"For equally stiff bodies deflation saves {saved(alike)} of "
+        f"{alike['iterations without']} multigrid iterations; for bodies {most['ratio']:,.0f} "
+        "times "
+        f"as stiff as their neighbours it saves {saved(most)} of {most['iterations without']}.",
         [
             page.value(
                 "iterations with deflation, equal stiffness",
@@ -271,12 +272,14 @@ def answer(page: Page, rows: list[Record]) -> None:
                 by="without",
             ),
             page.value(
-                "iterations without over with, beside block Jacobi, most",
+                "iterations without over with deflation, block Jacobi, at most",
                 max(row["iterations without"] / row["iterations with"] for row in jacobi),
             ),
         ],
         hero=ITERATIONS,
-        cautions=["Steel is 1.2 times as stiff as cast iron: deflation is not in the solver."],
+        cautions=[
+            "Steel is only 1.2 times as stiff as cast iron: so deflation is not in the solver."
+        ],
     )
     page.say(
         f"Deflation saves time at {len(wins)} of {len({row['ratio'] for row in rows})} ratios of "

@@ -390,10 +390,10 @@ def answer(page: Page, goals: list[Record], rates: list[float]) -> None:
     reached = sum(row["reached"] == "yes" for row in goals)
     over = float(mine[0]["measured"])
     page.answer(
-        "How far is a solve from the time in which memory moves its bytes?",
-        f"{BENCHMARKS[str(first)]().title}, {mine[0]['unknowns']:,} unknowns: iterations take "
-        f"{over:.2g} times what memory needs for their bytes; {reached} of {len(goals)} goals are "
-        "reached.",
+        "How far is a solve from the limit that memory bandwidth sets?",
+        f"Iterations take {over:.2g} times as long as memory needs to move their bytes "
+        f"({mine[0]['unknowns']:,} unknowns); {reached} of {len(goals)} goals "
+        f"{'is' if reached == 1 else 'are'} reached.",
         [
             *(
                 page.value(
@@ -411,7 +411,10 @@ def answer(page: Page, goals: list[Record], rates: list[float]) -> None:
             ),
         ],
         hero=OVER_FLOOR,
-        cautions=["Small problems fit into caches, and may be faster than their floor."],
+        cautions=[
+            f"The problem: {BENCHMARKS[str(first)]().title.lower()}. The floor is the time in "
+            "which memory moves the bytes; small problems fit into caches, and may be faster.",
+        ],
     )
 
 

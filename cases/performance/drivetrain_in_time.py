@@ -345,21 +345,21 @@ def answer(
             source="largest resident memory of a process of its own",
         )
     page.answer(
-        "How fast is a whole drivetrain in time, on rollers and with digests?",
-        f"Ten minutes at 1 kHz take {whole:.3g}\u00a0s of a core on rollers, {plain:.3g}\u00a0s "
-        f"on springs; {MANY} such files take two cores {hours:.2g}\u00a0h on rollers.",
+        "How fast is a whole drivetrain simulated in time?",
+        f"Ten minutes at 1\u00a0kHz take {whole:.3g}\u00a0s on one core with bearings modelled "
+        f"roller by roller, {plain:.3g}\u00a0s with bearings as springs.",
         [
-            page.value("steps a second and core, on rollers", float(rollers[RATE])),
-            page.value("steps a second and core, on springs", float(springs[RATE])),
-            page.value(f"{MANY} files of ten minutes on two cores [h]", hours),
+            page.value("steps a second and core, roller by roller", float(rollers[RATE])),
+            page.value("steps a second and core, bearings as springs", float(springs[RATE])),
+            page.value(f"{MANY} files of ten minutes on two cores, roller by roller [h]", hours),
             page.value(f"memory after {memory[-1][0]:g} s [MB]", memory[-1][1]),
             page.value("steps a second of many files, all cores", float(farm[_ALL])),
         ],
         hero=GROWS,
         cautions=[
-            f"The time of {MANY} files is a product: of steps, of the processor time of one, "
-            "and of the time to begin, over two cores.",
-            "Meshes have their mean stiffness, planets stand at one azimuth.",
+            f"The time of {MANY} files is extrapolated from the processor time of a step and of "
+            "the start.",
+            "Gear meshes have their mean stiffness; planets do not travel round.",
         ],
     )
 

@@ -137,13 +137,13 @@ def answer(
     )
     rate, ratio = samples / pieces.median, streamed.median / pieces.median
     quicker = (
-        f"{ratio:.2g} times as fast as" if ratio >= 1.0 else f"{1 / ratio:.2g} times slower than"
+        f"{ratio:.2g} times as fast as" if ratio >= 1.0 else f"{1 / ratio:.2g} times as long as"
     )
+    on = "" if workers < 1 else f" on {workers} {'workers' if workers > 1 else 'worker'}"
     page.answer(
-        "How fast are years of a wind farm's load histories counted?",
-        f"{samples / 1e6:,.3g}\u00a0million samples take {pieces.median:.3g}\u00a0s in pieces on "
-        f"{workers} {'workers' if workers > 1 else 'worker'}, {quicker} one stream, with the same "
-        "cycles to the last digit.",
+        "How fast are load cycles counted in years of a wind farm's load histories?",
+        f"Counting {samples / 1e6:,.3g}\u00a0million samples takes {pieces.median:.3g}\u00a0s in "
+        f"pieces{on}, {quicker} one stream; the cycles are exactly the same.",
         [
             page.value("samples a second, in pieces [million]", rate / 1e6),
             page.value(
@@ -154,12 +154,13 @@ def answer(
                 if samples > QUICK
                 else []
             ),
-            *(page.value(f"most memory {name} [MB]", value) for name, value in memory.items()),
+            *(page.value(f"peak memory {name} [MB]", value) for name, value in memory.items()),
         ],
         hero=BOTH,
         cautions=[
-            "Pieces count levels too, and take the start of processes; noise is made in both.",
-            "Reading of files is in neither.",
+            "Times in pieces include the start of processes and the count of levels; both include "
+            "the making of the samples.",
+            "Reading of files is not included.",
         ],
     )
 

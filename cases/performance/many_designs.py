@@ -283,24 +283,28 @@ def answer(page: Page, swept: Pairs, sampled: Pairs, band: Mapping[str, float]) 
     """State designs a minute, both ways."""
     minute = sampled.a_minute(REUSED)
     page.answer(
-        "How many samples a minute does an assembly of solids allow?",
-        f"From neighbours {minute:.3g} a minute, each for itself {sampled.a_minute(OWN):.3g}; of "
-        f"the bores of a sweep {swept.a_minute(REUSED):.3g} and {swept.a_minute(OWN):.3g}.",
+        "How many designs a minute can a solid-element assembly compute?",
+        f"A solid assembly computes {minute:.3g} samples a minute when each starts from its "
+        f"neighbour, {sampled.a_minute(OWN):.3g} otherwise; sweeps over bores "
+        f"{swept.a_minute(REUSED):.3g} against {swept.a_minute(OWN):.3g}.",
         [
             page.value(
-                "samples a minute", minute, beside=sampled.a_minute(OWN), by="each for itself"
+                "samples a minute, from neighbours",
+                minute,
+                beside=sampled.a_minute(OWN),
+                by="otherwise",
             ),
             page.value(
-                "bores of a sweep a minute",
+                "bores of a sweep a minute, from neighbours",
                 swept.a_minute(REUSED),
                 beside=swept.a_minute(OWN),
-                by="each for itself",
+                by="otherwise",
             ),
             page.value(
-                "largest difference of the hub's stiffness from meshes of their own [%]",
+                "largest difference of the hub's stiffness from a new mesh [%]",
                 100.0 * max(max(p.apart[name] for name in HUB) for p in (swept, sampled)),
                 beside=100.0 * max(band.values()),
-                by="band of the mesh",
+                by="mesh error",
             ),
             page.value(
                 "iterations of the last bore of the sweep",
@@ -311,9 +315,9 @@ def answer(page: Page, swept: Pairs, sampled: Pairs, band: Mapping[str, float]) 
         ],
         hero=ITERATIONS,
         cautions=[
-            "Times are wall times, of both ways in turn; designs that had to be meshed count as "
-            "neither.",
-            "Bores and samples are of one scene, a bonded main bearing.",
+            "Times are wall times, both ways measured in turn; designs that needed a new mesh do "
+            "not count.",
+            "All designs are of one drivetrain file, a bonded main bearing.",
         ],
     )
     page.say(

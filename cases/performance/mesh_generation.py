@@ -199,9 +199,9 @@ def answer(page: Page, sizes: list[Record], bound: Record) -> None:
     last = sizes[-1]
     meshing, solving = float(last[MESHING[1]]), float(last[SOLVING[1]])
     page.answer(
-        "How long does meshing take beside the solve?",
-        f"At {last['elements']:,} elements meshing takes {value_text(meshing, 's')}, "
-        f"{meshing / solving:.2g} times the solve of ten unit loads.",
+        "How long does meshing take, compared with the solve?",
+        f"Meshing {last['elements']:,} elements takes {value_text(meshing, 's')}, "
+        f"{meshing / solving:.2g} times as long as solving for ten unit loads.",
         [
             page.value(
                 "meshing [s]",
@@ -209,12 +209,16 @@ def answer(page: Page, sizes: list[Record], bound: Record) -> None:
                 beside=solving,
                 by="solve",
             ),
-            page.value("meshing [µs/element]", float(last["meshing [µs/element]"])),
-            page.value("solve of ten unit loads [µs/element]", float(last["solve [µs/element]"])),
-            page.value("times as fast with parts side by side, at best", float(bound[AT_BEST])),
+            page.value("meshing, for each element [µs]", float(last["meshing [µs/element]"])),
+            page.value(
+                "solve of ten unit loads, for each element [µs]", float(last["solve [µs/element]"])
+            ),
+            page.value(
+                "possible speed-up by meshing parts in parallel, at best", float(bound[AT_BEST])
+            ),
         ],
         hero=PER_ELEMENT,
-        cautions=["Meshing and solve are on one thread each, as gmsh is here."],
+        cautions=["Meshing and solve run on one thread each."],
     )
 
 

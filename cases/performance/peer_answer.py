@@ -39,9 +39,9 @@ def answer(
         # a chart of one point becomes a sentence
         hero=time_caption(benchmarks[0]) if sum(bool(row.found) for row in found[0]) > 1 else "",
         cautions=[
-            "Each tool is used as its documentation has it, with the same threads; others can be "
+            "Each tool is used as its documentation shows, with the same threads; others can be "
             "tuned further.",
-            "Making the mesh, imports and compiling are not in the times.",
+            "Times are without meshing, imports and compiling.",
         ],
     )
 
@@ -55,7 +55,7 @@ def verdict(known: Sequence[Record]) -> str:
     low, high = value_text(min(every)), value_text(max(every))
     times = f"{low} times" if low == high else f"{low} to {high} times"
     name, unknowns = short(str(least["fastest other"])), f"{int(least['unknowns']):,}"
-    nearest = "no other answers in time" if name.startswith("none") else f"nearest is {name}"
+    nearest = "no other answers in time" if name.startswith("none") else f"{name} comes nearest,"
     if float(least[RATIO]) < 1.0:
         ours = sum(float(row[RATIO]) >= 1.0 for row in known)
         return (
@@ -98,7 +98,7 @@ def ratios(page: Page, known: Sequence[Record]) -> list[KeyFigure]:
             by="goal",
         ),
         page.value(
-            f"meshes with at least {FASTER:g} times the speed of every other",
+            f"meshes on which ours is at least {FASTER:g} times as fast as every other",
             sum(row["reached"] == "yes" for row in known),
             beside=len(known),
             by="all",
@@ -123,6 +123,6 @@ def at_largest(page: Page, benchmark: Benchmark, rows: Sequence[Row]) -> list[Ke
     last = done[-1]
     what = f"{benchmark.title}, {last.unknowns:,} unknowns"
     return [
-        page.value(f"{what} [s]", last.seconds or 0.0),
+        page.value(f"{what}: time [s]", last.seconds or 0.0),
         page.value(f"{what}: peak memory [GiB]", (last.bytes or 0) / 2**30),
     ]

@@ -162,7 +162,8 @@ def answer(
     own = [row for row in compared if row["program"] == OURS]
     figures = [
         page.value(
-            f"{row['problem']}: {row['program']}'s time over ours at {row['error']:.0e}",
+            f"{row['problem']}: time of {row['program']} over ours, error "
+            f"{value_text(float(row['error']))}",
             float(row[RATIO]),
             beside=FASTER,
             by="goal",
@@ -175,14 +176,14 @@ def answer(
         for row in fine[: 6 - len(figures)]
     ]
     page.answer(
-        "How fast are a gear pair and a planetary stage integrated in time, at equal error?",
+        "How fast are a gear pair and a planetary stage simulated in time, at equal error?",
         verdict(nearest, fine),
         figures[:6],
         hero=caption(found[1][0]),
         cautions=[
-            "Building the models and compiling are not in the times.",
-            "Matrices are constant but for cosines of time in the meshes: gaps and rolling "
-            "bearings are not compared here.",
+            "Times are without building the models and compiling.",
+            "Only gear-mesh stiffnesses vary, as cosines of time: clearances and rolling bearings "
+            "are not compared.",
         ],
     )
 
@@ -204,21 +205,22 @@ def verdict(nearest: Sequence[Record], own: Sequence[Record]) -> str:
     if not nearest:
         row = own[0]
         return (
-            f"A second of motion of the {str(row['problem']).partition(',')[0]} takes "
-            f"{value_text(float(row[TIME]), 's')} to 1e-5; no other program was compared."
+            f"One second of motion of the {str(row['problem']).partition(',')[0]} takes "
+            f"{value_text(float(row[TIME]), 's')} with an error of "
+            f"{value_text(float(row['error']))}; no other program was compared."
         )
     least = min(nearest, key=lambda row: float(row[RATIO]))
     ratios = [float(row[RATIO]) for row in nearest]
     if min(ratios) >= 1.0:
         return (
             f"At equal error this project is {value_text(min(ratios))} to "
-            f"{value_text(max(ratios))} times as fast as the fastest other; nearest is "
+            f"{value_text(max(ratios))} times as fast as the fastest other program; nearest is "
             f"{least['program']}."
         )
     ours = sum(ratio >= 1.0 for ratio in ratios)
     return (
-        f"At equal error this project is fastest in {ours} of {len(ratios)}; {least['program']} "
-        f"wins by {value_text(1.0 / min(ratios))} times at {least['error']:.0e} on the "
+        f"At equal error this project is fastest in {ours} of {len(ratios)} comparisons; "
+        f"{least['program']} is {value_text(1.0 / min(ratios))} times as fast for the "
         f"{str(least['problem']).partition(',')[0]}."
     )
 

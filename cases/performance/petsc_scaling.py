@@ -163,7 +163,7 @@ def answer(page: Page, strong: list[Record], best: Record | None) -> None:
         if gain >= 1.0
         else f"{1 / gain:.2g} times slower than one"
     )
-    far = "" if best is None else f"; by the model 10⁹ take {best['time [s]']:.0f}\u00a0s"
+    far = "" if best is None else f"; extrapolated, 10⁹ unknowns take {best['time [s]']:.0f}\u00a0s"
     figures = [
         page.value("speed over one process", gain, beside=float(last[PROCESSES]), by="processes"),
         page.value("assembly, set-up and solve [s]", seconds, beside=float(first[TOTAL]), by="one"),

@@ -190,24 +190,25 @@ def answer(page: Page, rows: list[Record]) -> None:
     within = sum(medians[name] <= goals[name] for name in names)
     page.answer(
         "How long does a user wait from the command to its report?",
-        f"'{longest['command']}', {longest['before']}, takes {value_text(seconds, 's')}, "
-        f"{'within' if seconds <= goal else 'beyond'} its goal of {goal:g}\u00a0s; {within} of "
-        f"{len(rows)} waits reach theirs.",
+        f"The command '{longest['command']}' takes {value_text(seconds, 's')} "
+        f"({longest['before']}), {'within' if seconds <= goal else 'beyond'} its goal of "
+        f"{goal:g}\u00a0s; {within} of {len(rows)} commands reach theirs.",
         [
             *(
                 page.value(f"{name} [s]", medians[name], beside=goals[name], by="goal")
                 for name in names
             ),
+            page.value("processor time of that command [s]", float(longest["on processors [s]"])),
             page.value(
-                "time on processors of the longest [s]", float(longest["on processors [s]"])
-            ),
-            page.value(
-                "spread of the longest [s]",
+                "spread of its wait between runs [s]",
                 float(longest["most [s]"]) - float(longest["least [s]"]),
             ),
         ][:6],
         hero=WAITING,
-        cautions=["Times are those of this machine, with whatever else it was doing."],
+        cautions=[
+            "Times are those of this machine, which had other work, too. 'Nothing kept' is a "
+            "first run: no mesh or solution is stored from before."
+        ],
     )
 
 

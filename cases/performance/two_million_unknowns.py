@@ -219,22 +219,26 @@ def answer(
     worst = max(most, key=lambda name: most[name])
     last = done[worst][-1]
     if last.unknowns < NEAR * UNKNOWNS:
-        reached = f"the goal, {UNKNOWNS / 1e6:g}\u00a0million in {MEMORY:g}\u00a0GiB, was not run"
+        reached = f"{UNKNOWNS / 1e6:g}\u00a0million unknowns were not run"
     else:
         reached = (
-            f"{'within' if most[worst] <= MEMORY else 'beyond'} the goal of {MEMORY:g}\u00a0GiB"
+            f"this is {'within' if most[worst] <= MEMORY else 'beyond'} the goal of "
+            f"{MEMORY:g}\u00a0GiB"
         )
     title = BENCHMARKS[worst]().title
     exact = [check for check in page.checks if check.check == "equals"]
     page.answer(
         question,
-        f"{title}: {last.unknowns:,} unknowns take {value_text(most[worst], 'GiB')} and "
-        f"{value_text(last.seconds or 0.0, 's')}; {reached}.",
+        f"A model with {last.unknowns:,} unknowns ({title.lower()}) takes "
+        f"{value_text(most[worst], 'GiB')} and {value_text(last.seconds or 0.0, 's')}; "
+        f"{reached}.",
         [
-            page.value("most memory [GiB]", most[worst], beside=MEMORY, by="goal"),
+            page.value("peak memory [GiB]", most[worst], beside=MEMORY, by="goal"),
             page.value(f"time, {title.lower()} [s]", last.seconds or 0.0),
             *(
-                page.value(f"exponent of {what}, {title.lower()}", law.exponent)
+                page.value(
+                    f"exponent of growth of {what} with unknowns, {title.lower()}", law.exponent
+                )
                 for name, both in laws.items()
                 if name == worst
                 for what, law in zip(("time", "memory"), both, strict=True)
@@ -245,7 +249,7 @@ def answer(
             ),
         ],
         hero=MEMORY_CHART,
-        cautions=["Meshes are made before, and not in the times."],
+        cautions=["Times are without meshing."],
     )
 
 

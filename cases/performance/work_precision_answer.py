@@ -35,13 +35,13 @@ def answer(
     figures += [figure for of in others for figure in of]
     reached = sum(row["reached"] == "yes" for row in goals)
     page.answer(
-        "Which element, mesh and solver give a stiffness to the error that is asked for?",
+        "Which element and solver give a stiffness fastest within a given error?",
         verdict(studies[0]) if studies else f"{reached} of {len(goals)} goals are reached.",
         figures[:6],
         hero=errors_caption(studies[0], 0) if studies else growth_caption,
         cautions=[
-            "Times are those of this machine, kernels compiled before.",
-            "Errors smaller than the reference's own band are shown pale, and not ranked.",
+            "Times are those of this machine, with loops compiled before.",
+            "Errors below the uncertainty of the reference are shown pale, and are not ranked.",
         ],
     )
 
@@ -62,8 +62,9 @@ def verdict(study: Study) -> str:
         best = study.cheapest(0, bound)
         if best is not None:
             return (
-                f"{name} within {percent(bound)} takes {best.total:.2g}\u00a0s with "
-                f"{IN_WORDS.get(best.element, best.element)} and {best.used}, mesh included."
+                f"{name} within {percent(bound)} is found fastest with "
+                f"{IN_WORDS.get(best.element, best.element)} and the solver {best.used}: in "
+                f"{best.total:.2g}\u00a0s with meshing."
             )
     least = float(study.error(0).min())
     return (
@@ -80,7 +81,7 @@ def of_study(page: Page, study: Study) -> list[KeyFigure]:
         if best is not None:
             figures.append(
                 page.value(
-                    f"{study.quantities[0]} within {percent(bound)}, quickest [s]",
+                    f"{study.quantities[0]} within {percent(bound)}, shortest time [s]",
                     best.total,
                     0.5 * (best.most - best.least),
                 )
@@ -89,7 +90,7 @@ def of_study(page: Page, study: Study) -> list[KeyFigure]:
         least = int(study.error(0).argmin())
         figures = [
             page.value(
-                f"{study.quantities[0]}, least error [%]", 100.0 * float(study.error(0)[least])
+                f"{study.quantities[0]}, smallest error [%]", 100.0 * float(study.error(0)[least])
             ),
             page.value(f"{study.quantities[0]}, time of that [s]", float(study.seconds()[least])),
         ]

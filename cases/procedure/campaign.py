@@ -7,7 +7,6 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.procedure.known_drivetrain import known_of
 from fe_drivetrain.common import Floats
-from fe_drivetrain.common.typeset import MINUS
 from fe_drivetrain.dynamics import Machine, machine_of, torsional
 from fe_drivetrain.dynamics.torsion import (
     GENERATOR,
@@ -170,19 +169,20 @@ def answer(
     largest, equivalent = (one.computed for one in page.figures)
     apart = 100.0 * (largest * 1e3 / gauge.max() - 1.0)
     page.answer(
-        "Does a model of two inertias give the torque that a campaign measures?",
-        f"Two inertias give {value_text(largest, 'kN m')} of peak torque, {apart:+.1f}\u00a0% from "
-        f"that measured, whose gain errs by {error:.1f}\u00a0%.".replace("-", MINUS),
+        "Does a model of two inertias give the torque that a measurement campaign finds?",
+        f"A model of two inertias gives a peak torque of {value_text(largest, 'kN m')}, "
+        f"{abs(apart):.1f}\u00a0% {'above' if apart > 0.0 else 'below'} the measured one, whose "
+        f"calibration is off by {abs(error):.1f}\u00a0%.",
         [
             page.value(f"{most} [kN m]", largest, beside=float(gauge.max()) / 1e3, by=by),
             page.value(f"{size} [kN m]", equivalent, beside=measured_size, by=by),
             page.value(
-                "spread of the torque [kN m]",
+                "standard deviation of the torque [kN m]",
                 float(computed.std()) / 1e3,
                 beside=float(gauge.std()) / 1e3,
                 by=by,
             ),
-            page.value("error of gain left by scaling to power [%]", error),
+            page.value("error of the measured torque's calibration [%]", error),
             page.value(
                 "stiffness identified, over the truth",
                 gain * page.checks[-1].computed,
@@ -192,10 +192,10 @@ def answer(
         ],
         hero=TORQUE,
         cautions=[
-            f"Measurements are virtual: {in_words(inertias)} inertias, a bridge and encoders with "
-            "noise.",
-            "Scaling to power turns the bridge's offset of "
-            f"{one.gauge.offset / 1e3:.3g} kN m into an error of gain, which the identified "
+            f"Measurements are simulated: {in_words(inertias)} inertias, a strain-gauge bridge and "
+            "encoders with noise.",
+            "Calibration by electric power turns the bridge's offset of "
+            f"{one.gauge.offset / 1e3:.3g} kN m into an error of scale, which the identified "
             "stiffness has, too.",
         ],
     )

@@ -448,8 +448,8 @@ def answer(page: Page) -> None:
     }
     page.answer(
         "Which values of the PROTEST procedure can be reproduced without private data?",
-        f"{agree} of {len(page.checks)} quantities agree with exact values; the printed mean "
-        f"turbulence of Fig. 4-14 does not hold: {turbulence.computed:.2f}\u00a0%, not "
+        f"{agree} of {len(page.checks)} quantities agree with exact values; the mean turbulence "
+        f"printed in Fig. 4-14 does not: it is {turbulence.computed:.2f}\u00a0%, not "
         f"{PRINTED_TURBULENCE}\u00a0%.",
         [
             page.value("quantities that agree", agree, at_least=len(page.checks), by="all"),

@@ -48,17 +48,18 @@ def answer(page: Page, rows: Sequence[Record]) -> None:
     by_place = {str(row["where"]): row for row in numbers if row["where"] in MOST}
     stiffness, inertia = (float(by_place[where]["printed / right"]) for where in list(MOST)[:2])
     page.answer(
-        "Which statements of PROTEST do not hold, and what do they change?",
-        f"{len(wrong)} places of PROTEST do not hold, {len(numbers)} change a number: its "
-        f"stiffness is {times_off(stiffness)}, its inertia {times_off(inertia)}.",
+        "Which statements of the PROTEST report do not hold, and what do they change?",
+        f"{len(wrong)} statements of PROTEST do not hold; {len(numbers)} change a number: a "
+        f"stiffness is {times_off(stiffness)}, an inertia {times_off(inertia)}.",
         [
-            page.value("places that change a number", len(numbers), beside=len(wrong), by="all"),
+            page.value(
+                "wrong statements that change a number", len(numbers), beside=len(wrong), by="all"
+            ),
             *(beside_printed(page, name, by_place[where]) for where, name in MOST.items()),
         ],
         hero=APART,
         cautions=[
-            "The text at hand is one of extracted characters: what is garbled in it may stand "
-            "right in print.",
+            "The text was extracted automatically: what is garbled in it may be right in print.",
             "The guideline of Germanischer Lloyd was not read: its numbers are left out.",
         ],
         claim="does not hold",

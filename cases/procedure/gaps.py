@@ -113,10 +113,11 @@ def answer(
     """State the torque of dips, resonances in operation, and the force [kN] of an offset."""
     catalogue = protest_catalogue()
     largest = page.judged(LARGEST, "largest torque in a dip over that before", "two steps")
-    verdict = (
-        f"A voltage dip brings {formatted(largest.value, 3)} times the torque before; {met} "
-        "resonances lie in operation"
+    dips = (
+        f"Load cases leave out voltage dips ({formatted(largest.value, 3)} times the torque before)"
     )
+    resonances = f"{met} resonances in the operating range"
+    verdict = f"{dips} and {resonances}"
     forces = []
     share = f"{100 * of.ratio:g} % of critical"
     cautions = [
@@ -126,21 +127,25 @@ def answer(
     ]
     if offset is not None:
         support, force = offset
-        verdict += f"; 0.5\u00a0mm of offset loads a bearing by {value_text(force, 'kN')}"
-        forces = [page.value(f"force of 0.5 mm of offset, {support} [kN]", force)]
+        verdict = (
+            f"{dips}, {resonances} and misalignment (0.5\u00a0mm loads a bearing with "
+            f"{value_text(force, 'kN')})"
+        )
+        forces = [page.value(f"force by 0.5 mm of misalignment, {support} [kN]", force)]
         cautions.append(
-            "On three points offsets load nothing; the force is that of two main bearings."
+            "The force is that with two main bearings: on a three-point suspension misalignment "
+            "loads nothing."
         )
     page.answer(
         "What do the standard's design load cases leave out of a drivetrain?",
         f"{verdict}.",
         [
             largest,
-            page.value("least torque in a dip over that before", least),
-            page.value("resonances in operation", met),
+            page.value("lowest torque in a dip over that before", least),
+            page.value("resonances in the operating range", met),
             *forces,
             page.value(
-                "design loads without a load case",
+                "design loads that no load case covers",
                 len(catalogue.uncovered),
                 beside=len(catalogue.design_loads),
                 by="all",

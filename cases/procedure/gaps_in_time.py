@@ -228,18 +228,20 @@ def answer(
 ) -> None:
     """State what an offset and a dip do inside the gearbox, and how many sentences hold."""
     worst = max(found, key=lambda one: max(one.changes("bearing").values()))
-    change = page.judged(CHANGE, f"change of {worst.worst.removeprefix('force of ')}")
+    change = page.judged(CHANGE, f"change of the force on {worst.worst.removeprefix('force of ')}")
     peak = page.judged(PEAK, "largest torque in a dip, over rated", "rated")
     hold = sum(row["verdict"] == "holds" for row in rows)
     bearing = max(peak_of(one, "bearing")[1] for one in dips.values())
     mesh = max(peak_of(one, "mesh")[1] for one in dips.values())
     aligned = abs(worst.result.extremes[worst.worst].rated) / 1e3
     mounted = MOUNT in worst.result.extremes
+    name = worst.name.replace(" mm", "\u00a0mm").replace(" mrad", "\u00a0mrad")
     page.answer(
         "What do misalignment and voltage dips do inside the gearbox, over time?",
-        f"{worst.name[0].upper()}{worst.name[1:]}: a bearing's force changes by "
-        f"{value_text(change.value or 0.0, 'kN')}; dips reach {formatted(peak.value or 0.0, 3)} "
-        f"of rated torque. {hold} of {len(rows)} statements hold.",
+        f"With the {name}, a bearing's force changes by "
+        f"{value_text(change.value or 0.0, 'kN')}; dips reach "
+        f"{formatted(peak.value or 0.0, 3)} times rated torque; {hold} of {len(rows)} statements "
+        "hold.",
         [
             change,
             page.value("force of that bearing, aligned [kN]", aligned),
@@ -250,8 +252,8 @@ def answer(
         ],
         hero=HERO.format(bearing_of(found)),
         cautions=[
-            f"The report agrees on no size of misalignment: {1e3 * offset:g} mm here, and "
-            "constraining forces are proportional to it.",
+            f"The report states no size of misalignment: {1e3 * offset:g} mm is assumed, and "
+            "forces are proportional to it.",
             f"Bearings have no clearance here, and the housing stands "
             f"{'on its mount' if mounted else 'on the ground'}: clearance"
             f"{'' if mounted else ' and a mount'} would take up a part of an offset.",

@@ -151,9 +151,9 @@ def answer(page: Page, rows: list[Record], noisy: list[Record], title: str) -> N
     right = low > 0.8 and high < 1.2
     page.answer(
         "Do PROTEST's equations identify a drivetrain's stiffness, damping and inertia?",
-        f"Eq 4 finds the stiffness within {stiffness:.1g}\u00a0%; methods A to C "
-        f"{'hold' if right else 'do not hold'}: their damping is {formatted(low, 2)} to "
-        f"{formatted(high, 2)} times the truth.",
+        f"PROTEST's Eq 4 finds the stiffness within {stiffness:.1g}\u00a0%, "
+        f"{'and' if right else 'but'} methods A to C {'find' if right else 'do not find'} the "
+        f"damping: {formatted(low, 2)} to {formatted(high, 2)} times the true one.",
         [
             page.judged("resonance, Eq 4: stiffness", "stiffness by Eq 4", "closed form"),
             page.value(
@@ -183,8 +183,8 @@ def answer(page: Page, rows: list[Record], noisy: list[Record], title: str) -> N
             if title
             else "The drivetrain is simulated and known; inertia and stiffness are assumed, of the "
             "size of a 750 kW machine.",
-            "Least squares on the reduced torque have all three without an error, of exact "
-            "samples; of sensors with noise fits of spectra are to be used.",
+            "With exact samples least squares on the reduced torque find all three without error; "
+            "with noisy sensors use fits of spectra.",
         ],
         claim="" if title else "holds" if right else "holds in part",
     )

@@ -111,10 +111,9 @@ def answer(page: Page, worst: Record, peaks: ConvergenceInTime, own: bool) -> No
     moves, rests = (float(worst[f"{model}: deviation"]) for model in ("dynamics", "statics"))
     small = rests < 0.1 * moves
     page.answer(
-        "Do statics suffice for the loads at a drivetrain's interfaces?",
-        f"{place.capitalize()} scatters by {value_text(moves, unit)} in the dynamics and by "
-        f"{value_text(rests, unit)} in statics, which "
-        f"{'does not suffice' if small else 'suffices'} there.",
+        "Is a static calculation enough for the loads at a drivetrain's interfaces?",
+        f"{'No' if small else 'Yes'}: the {place} varies by {value_text(moves, unit)} (standard "
+        f"deviation) in a dynamic calculation, by {value_text(rests, unit)} in a static one.",
         [
             page.value(
                 f"standard deviation of {place} [{unit}]", moves, beside=rests, by="statics"
@@ -134,9 +133,8 @@ def answer(page: Page, worst: Record, peaks: ConvergenceInTime, own: bool) -> No
         cautions=[
             "What the file does not state is that of a machine of 1.5 MW, in proportion."
             if own
-            else "Masses, stiffnesses and inertias but those of the arms are assumed, of such "
-            "machines.",
-            "Peaks are those of the history's first "
+            else "All masses, stiffnesses and inertias are assumed, except those of the arms.",
+            "Peaks are those of the load history's first "
             f"{SECONDS_BETWEEN:g} s, resolved between samples.",
         ],
     )

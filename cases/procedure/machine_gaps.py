@@ -87,33 +87,35 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, speeds: tuple[float, float], torque: float, offset: float) -> None:
     """State the margin to resonance, and what dips and offsets load."""
     low, high = speeds
-    margin = page.judged(MARGIN, f"least margin to a resonance, {low:.4g} to {high:.4g} rpm")
+    margin = page.judged(
+        MARGIN, f"smallest margin of speed to a resonance, {low:.4g} to {high:.4g} rpm"
+    )
     most = page.judged(MAXIMUM, "largest torque of the main shaft in a dip")
-    least = page.judged(MINIMUM, "least torque of the main shaft in a dip")
+    least = page.judged(MINIMUM, "lowest torque of the main shaft in a dip")
     over = page.judged(
         f"{MAXIMUM}, over that before", "largest torque over that before", "two steps"
     )
     force = FORCE.partition(" [")[0]
     loaded = [
-        page.judged(force, f"force of {offset:g} mm of offset on a bearing")
+        page.judged(force, f"force on a bearing by {offset:g} mm of misalignment")
         for figure in page.figures
         if figure.quantity == force
     ]
     meets = (
-        f"the nearest resonance is {100 * margin.value:.2g}\u00a0% of speed away"
+        f"a resonance lies {100 * margin.value:.2g}\u00a0% from operating speed"
         if margin.value
         else "operation crosses a resonance"
     )
     page.answer(
         "What do a voltage dip, a resonance and misalignment do to this drivetrain?",
-        f"A voltage dip puts {certain_value(least)} to {certain_value(most)} into the main shaft, "
-        f"{formatted(over.value, 3)} times that before; {meets}.",
+        f"A voltage dip swings the main shaft's torque from {certain_value(least)} to "
+        f"{certain_value(most)}, {formatted(over.value, 3)} times that before; {meets}.",
         [most, least, over, margin, *loaded],
         hero=TORQUE,
         cautions=[
             f"Damping is assumed, {100 * RATIO:g} % of critical: the drivetrain's file has none.",
-            f"Torque before a dip is {torque:.4g} kN m; the generator's torque falls by up to all "
-            "of it.",
+            f"Torque before a dip is {torque:.4g} kN m; in a dip the generator's torque falls to "
+            "zero at worst.",
         ],
     )
 

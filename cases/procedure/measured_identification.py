@@ -226,8 +226,9 @@ def answer(
     known = damping > other
     page.answer(
         "Which stiffness and damping does the measured record give the drivetrain?",
-        f"The record gives {value_text(stiffness, 'N m/rad', band)}, {apart:+.2g}\u00a0% from the "
-        f"file; its damping is {'found' if known else 'not told from zero'}.",
+        f"The record gives a stiffness of {value_text(stiffness, 'N m/rad', band)}, "
+        f"{abs(apart):.2g}\u00a0% {'above' if apart > 0.0 else 'below'} the file's; its damping "
+        f"{'is found' if known else 'cannot be told from zero'}.",
         [
             page.value("stiffness [N m/rad]", stiffness, band, beside=one.stiffness, by="file"),
             page.value("damping [N m s/rad]", damping, other),

@@ -93,9 +93,8 @@ def answer(
     given, rows = channels
     page.answer(
         "Which quantities of PROTEST's pitch and yaw tables do simulations give?",
-        f"Simulations give {len(given)} of {len(rows)} channels; the pitch motor has "
-        f"{value_text(thermal, 'N m')} root mean square and {value_text(motor, 'N m')} at its "
-        "peak.",
+        f"Simulations give {len(given)} of the {len(rows)} channels that the tables ask for; the "
+        f"pitch motor's torque, for example, peaks at {value_text(motor, 'N m')}.",
         [
             page.value("channels that are given", len(given), beside=len(rows), by="asked for"),
             page.value(
@@ -114,8 +113,8 @@ def answer(
         ],
         hero=TORQUE,
         cautions=[
-            "Torsion of a blade's root is that of bent blades alone: aerofoils' pitching moments "
-            "are left out."
+            "Torsion at the blade root comes from bent blades alone: the aerofoils' pitching "
+            "moments are left out."
         ],
     )
 

@@ -21,7 +21,7 @@ from fe_drivetrain.procedure import (
     sampling_rates,
 )
 from fe_drivetrain.report import chart, mark_events, trace
-from fe_drivetrain.report.number_text import formatted
+from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 from fe_drivetrain.report.suite.chosen import SETTING
 
@@ -107,17 +107,19 @@ def answer(page: Page, known: Known, rows: list[Record], damping: list[Record]) 
     largest = max(rows, key=lambda row: float(row["largest [N m]"]))
     reversed_by = min(rows, key=lambda row: float(row["shaft torque, least [N m]"]))
     most, least = float(largest["largest [N m]"]), float(reversed_by["shaft torque, least [N m]"])
-    turned = "reversed" if largest is reversed_by else f"{reversed_by['case']} reverses it"
+    off = max(
+        abs(float(row[key]) / float(row["true"]) - 1.0) for row in damping for key in (CLEAN, NOISY)
+    )
     page.answer(
-        "Which measurement case loads the shaft most, and what do stops tell of damping?",
-        f"{str(largest['what']).capitalize()} loads the shaft most: {most / rated:.2f} times rated "
-        f"torque, {turned} to {formatted(least / rated, 2)} times.",
+        "Which measurement case loads the shaft most, and do stops give the damping?",
+        f"{str(largest['what']).capitalize()} loads the shaft most, {most / rated:.2f} times "
+        f"rated torque; stops give the damping within {percent_text(off)}.",
         [
             page.value("largest torque of the shaft [N m]", most, beside=rated, by="rated"),
-            page.value("least torque of the shaft [N m]", least, beside=rated, by="rated"),
+            page.value("lowest torque of the shaft [N m]", least, beside=rated, by="rated"),
             *(
                 page.value(
-                    f"damping ratio after {row['case']}, {name} [%]",
+                    f"damping ratio after stop {row['case']}, {name} [%]",
                     100.0 * float(row[key]),
                     beside=100.0 * float(row["true"]),
                     by="truth",
@@ -131,7 +133,7 @@ def answer(page: Page, known: Known, rows: list[Record], damping: list[Record]) 
         ],
         hero=TORQUE,
         cautions=[
-            "Times, speeds and torques of the scripts are assumed: the report has codes and words."
+            "Times, speeds and torques of the cases are assumed: the report only names them."
         ],
     )
 

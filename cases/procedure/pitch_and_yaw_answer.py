@@ -20,9 +20,9 @@ def answer(page: Page, counts: Floats) -> None:
     (yawing,) = page.tables["yawing"]
     page.answer(
         "What torque do pitch and yaw motors need, and does Eq 5.1 of PROTEST give it?",
-        "Eq 5.1 as printed does not hold: in a shutdown the pitch motor needs "
-        f"{right:.0f}\u00a0N\u00a0m, not {printed:.0f}\u00a0N\u00a0m: inertia and friction "
-        "have the wrong sign.".replace("-", MINUS),
+        "Eq 5.1 as printed does not hold: a shutdown needs "
+        f"{right:.0f}\u00a0N\u00a0m of the pitch motor, not {printed:.0f}\u00a0N\u00a0m; its "
+        "inertia and friction have the wrong sign.".replace("-", MINUS),
         [
             page.value(
                 "largest torque of the pitch motor in a shutdown [N m]",
@@ -47,11 +47,11 @@ def answer(page: Page, counts: Floats) -> None:
                 float(yawing["thermal torque of 600 s [N m]"]),
             ),
             page.value(
-                "meshes of the tooth used most, over the mean",
+                "contacts of the tooth used most, over the mean of all teeth",
                 float(counts.max() / counts.mean()),
             ),
             page.value(
-                "teeth of a blade's ring that are used",
+                "teeth of a pitch ring that are used",
                 float((counts > 0.0).sum()),
                 beside=TEETH,
                 by="all",
@@ -59,9 +59,9 @@ def answer(page: Page, counts: Floats) -> None:
         ],
         hero=SHUTDOWN,
         cautions=[
-            "Inertias and ratios of the drives are assumed, of a machine of 2 MW.",
-            "Loads of the pitch bearing are those of a turbine that moves; in the shutdown, and of "
-            "yaw drives, they are assumed.",
+            "Inertias and gear ratios of the drives are assumed for a turbine of 2 MW.",
+            "Loads of the pitch bearing are simulated; those of the shutdown and of the yaw "
+            "drives are assumed.",
         ],
         claim="does not hold",
     )

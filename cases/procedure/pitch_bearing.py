@@ -96,13 +96,13 @@ def answer(
     near, far = (float(row["oval w2 [µm]"]) for row in (short, long))
     holds = [float(row["case [mm]"]) for row in cases if row["the core fails first"] == "no"]
     page.answer(
-        "How oval does a pitch bearing become under its root moment, and who decides it?",
+        "How oval does a pitch bearing become under the blade-root moment, and what decides it?",
         f"A moment of 3\u00a0MN\u00a0m makes the ring oval by {near:.0f}\u00a0µm on a stiff hub, "
-        f"by {far:.0f}\u00a0µm on a neck of {long['neck [m]']:g}\u00a0m: "
+        f"by {far:.0f}\u00a0µm on a hub neck {long['neck [m]']:g}\u00a0m long: "
         f"{'the hub decides' if far > 1.2 * near else 'the hub hardly matters'}.",
         [
             page.value(
-                f"oval of the ring, neck of {long['neck [m]']:g} m [µm]",
+                f"ovality of the ring, neck of {long['neck [m]']:g} m [µm]",
                 far,
                 beside=near,
                 by=f"neck of {short['neck [m]']:g} m",
@@ -130,7 +130,7 @@ def answer(
         cautions=[
             "Dimensions, rollers and strengths are assumed, of a machine of 2 MW: the report "
             "prints none.",
-            "Gauges on one half of the ring miss the strains of the other half.",
+            "Strain gauges on one half of the ring miss the strains of the other half.",
         ],
     )
 

@@ -86,9 +86,10 @@ def answer(page: Page, level: Record, found: list[Influence], trials: list[Trial
     last = [trial for trial in trials if trial.stays][-1]
     locked = len(found) - sum(not trial.stays for trial in trials)
     page.answer(
-        "Which model of the gearbox does the main shaft's torque in a voltage dip need?",
-        f"The peak torque within {100 * TOLERANCE:g}\u00a0% needs {level['level']}, of which "
-        f"{last.degrees} of {trials[0].degrees} degrees of freedom are enough.",
+        "Which gearbox model is enough for the main shaft's torque in a voltage dip?",
+        f"A gearbox model of {level['level']} gives the peak torque within "
+        f"{100 * TOLERANCE:g}\u00a0%; {last.degrees} of its {trials[0].degrees} degrees of "
+        "freedom are enough.",
         [
             page.value(
                 f"error of the peak torque, {level['level']} [%]",
@@ -106,7 +107,7 @@ def answer(page: Page, level: Record, found: list[Influence], trials: list[Trial
                 100.0 * last.signal_error,
                 at_most=100.0 * TOLERANCE,
             ),
-            page.value("groups of springs that may be locked", locked, beside=len(found), by="all"),
+            page.value("groups of springs that may be rigid", locked, beside=len(found), by="all"),
             page.value("time of a run with these alone [s]", last.seconds),
         ],
         hero=BY_LEVEL,

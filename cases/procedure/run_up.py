@@ -166,32 +166,34 @@ def answer(
     highest = max(float(row[SHARE]) for row in swept)
     page.answer(
         "Which resonances does the drivetrain pass in operation, and how far are they excited?",
-        f"From {of.speeds[0]:.3g} to {of.speeds[1]:.3g}\u00a0rpm {met} excitations meet a mode; a "
-        f"run-up in {SECONDS:g}\u00a0s excites the mesh's modes to {100 * highest:.0f}\u00a0% of "
-        "their steady response at most.",
+        f"Between {of.speeds[0]:.3g} and {of.speeds[1]:.3g}\u00a0rpm the drivetrain passes {met} "
+        f"resonances; in a run-up of {SECONDS:g}\u00a0s gear-mesh modes reach at most "
+        f"{100 * highest:.0f}\u00a0% of their steady response.",
         [
             page.value(
-                "crossings at a part with 1 % or more of the energy",
+                "resonances (excited part has 1 % or more of the energy)",
                 met,
                 beside=sum(m.margin == 0.0 for m in found),
                 by="all crossings",
             ),
             *(
                 page.value(
-                    f"peak in the run-up over that at rest, mode of {row['mode [Hz]']:.3g} Hz",
+                    f"peak in the run-up over the steady response, mode of {row['mode [Hz]']:.3g} "
+                    "Hz",
                     float(row[SHARE]),
                 )
                 for row in swept
             ),
             page.value(
-                "peak comes later than the crossing by [Hz]",
+                "delay of the peak behind the resonance [Hz]",
                 max(float(row[LATE]) for row in swept),
             ),
             page.value(PEAK, series.value(PEAK), series.step_band(PEAK)),
         ],
         hero=DIAGRAM,
         cautions=[
-            "Damping and the error of transmission are assumed: all motions scale with the latter."
+            "Damping and the transmission error of the gears are assumed: all motions are "
+            "proportional to the latter."
         ],
     )
 

@@ -408,13 +408,12 @@ def answer(
     hold = sum(row["verdict"] == "holds" for row in rows)
     page.answer(
         "Is the simplest model of the drivetrain enough for torques in operation?",
-        f"Stage 1 is enough for {words}: damage-equivalent torques differ by "
-        f"{formatted(100 * low, 2)}\u00a0% (main shaft) and {formatted(100 * high, 2)}\u00a0% "
-        "(high-speed shaft).",
+        f"The simplest model (stage 1) is enough for {words}: damage-equivalent torques are "
+        f"{formatted(100 * low, 2)}\u00a0% and {formatted(100 * high, 2)}\u00a0% off.",
         [
             *(
                 page.value(
-                    f"DEL of the {shaft}, stage 1 against 2 [%]",
+                    f"difference of damage-equivalent torque, {shaft} [%]",
                     100.0 * far,
                     at_most=100.0 * SIGNIFICANT,
                     by="significant",
@@ -428,7 +427,7 @@ def answer(
                 by="PROTEST, at most",
             ),
             page.value(
-                "peaks of the main shaft in transients, difference over rated [%]",
+                "difference of peak torque in transients, main shaft, of rated [%]",
                 100.0 * differ(swift, LOW),
             ),
             page.value(
@@ -439,10 +438,10 @@ def answer(
         ],
         hero=hero,
         cautions=[
-            "The report prints no values of its turbine: stiffness of mounts, which its stage 2 "
-            "has, is missing here.",
-            "The turbine turns stage 1, and its torque drives both: what stage 2 gives back to the "
-            "rotor's speed is left out.",
+            "Stage 2 is the detailed model. The report prints no values of its turbine: the "
+            "stiffness of mounts, which its stage 2 has, is missing here.",
+            "Both models get the rotor torque of a simulation with stage 1: how stage 2 would "
+            "change the rotor's speed is left out.",
             f"Blade 3 has {100 * SURPLUS:g} % more mass, pitch is off by 0.3 degrees, as Table 4.6 "
             "has it.",
         ],

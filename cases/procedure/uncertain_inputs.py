@@ -353,14 +353,14 @@ def answer(
     most = {name: weightiest(inputs, slopes, name) for name in (FIRST, DAMAGE)}
     wide = {name: 100.0 * width.sampled for name, width in widths.items()}
     page.answer(
-        "How uncertain do uncertain inputs leave frequencies, loads and damage?",
-        f"The first frequency is certain within {formatted(wide[FIRST], 2)}\u00a0%, damage within "
-        f"{formatted(wide[DAMAGE], 2)}\u00a0%, most by {most[DAMAGE].name}; modes alone point "
-        f"to {most[FIRST].name}.",
+        "How uncertain are frequencies, loads and damage if the inputs are uncertain?",
+        f"With most inputs uncertain by ±\u00a0{100 * spread:g}\u00a0%, the first frequency is "
+        f"uncertain by ±\u00a0{formatted(wide[FIRST], 2)}\u00a0%, high-speed shaft damage by "
+        f"±\u00a0{formatted(wide[DAMAGE], 2)}\u00a0%, mainly through {most[DAMAGE].name}.",
         [
             *(
                 page.value(
-                    f"{name}, half of its band [%]",
+                    f"{name}, uncertainty ± [%]",
                     100.0 * widths[name].sampled,
                     100.0 * widths[name].band,
                     beside=100.0 * widths[name].first_order,
@@ -372,10 +372,12 @@ def answer(
         ],
         hero=HERO,
         cautions=[
-            f"Table 4.7 has a question mark for all but masses: {100 * spread:g} % here, and half "
-            "widths are in proportion to it.",
-            "Inputs are taken as independent and even over their half widths.",
-            "Damage is relative: the sum of ranges of torque to the power of 6.6.",
+            f"The {100 * spread:g} % are assumed, since Table 4.7 of PROTEST gives values for "
+            "masses alone; results are nearly proportional to them.",
+            f"The first frequency depends most on the {most[FIRST].name}, damage on the "
+            f"{most[DAMAGE].name}.".replace("LSS", "low-speed shaft"),
+            "Inputs are independent and uniformly distributed; damage is the sum of torque ranges "
+            "to the power of 6.6.",
         ],
         claim="holds" if hold == len(rows) else "holds in part",
     )

@@ -48,13 +48,13 @@ def test_questions_and_quantities_are_each_scenes_own() -> None:
 def test_a_level_below_the_last_has_that_ones_own_error_on_top() -> None:
     verdict = ladder_answers._verdict(found(1, (0.3, 0.01), 0.02), "the force")
     assert verdict == (
-        "The meridian in harmonics with housings as springs is enough for the force: its "
-        "error is at most 3\u00a0%, 5\u00a0% allowed."
+        "An axisymmetric shaft model with spring housings is enough: it gives the force within "
+        "3\u00a0% (5\u00a0% allowed)."
     )
     verdict = ladder_answers._verdict(found(2, (0.3, 0.1), 0.02), "the force")
     assert verdict == (
-        "Only the assembly of solids gives the force within 5\u00a0%; the meridian in harmonics "
-        "with housings as springs may err by 12\u00a0%."
+        "Only the full solid-element model gives the force within 5\u00a0%; an axisymmetric shaft "
+        "model with spring housings may err by 12\u00a0%."
     )
     assert "may err by 7" in ladder_answers._verdict(found(None, (0.3, 0.1), 0.07), "the force")
 
@@ -63,5 +63,6 @@ def test_statics_that_decides_is_said_to_be_enough_without_digits_of_round_off()
     result = found(0, (2e-12, 0.1), 0.07)
     result.chosen.model = SimpleNamespace(title="statics", level=0)
     assert ladder_answers._verdict(result, "the force") == (
-        "Statics is enough for the force: the best model agrees to round-off, 5\u00a0% allowed."
+        "Statics alone gives the force: the full solid-element model gives the same (5\u00a0% "
+        "error allowed)."
     )

@@ -76,9 +76,9 @@ def row(program: str, ratio: float) -> Record:
 def test_the_verdict_says_who_wins() -> None:
     own = [row(OURS, 1.0)]
     faster = peers_in_time.verdict(peers_in_time.nearest_peers([*own, row(EXUDYN, 2.0)]), own)
-    assert "2 times as fast as the fastest other; nearest is Exudyn" in faster
+    assert "2 times as fast as the fastest other program; nearest is Exudyn" in faster
     beaten = peers_in_time.verdict(peers_in_time.nearest_peers([*own, row(EXUDYN, 0.5)]), own)
-    assert "fastest in 0 of 1; Exudyn wins by 2 times" in beaten
+    assert "fastest in 0 of 1 comparisons; Exudyn is 2 times as fast" in beaten
     assert "no other program was compared" in peers_in_time.verdict([], own)
 
 

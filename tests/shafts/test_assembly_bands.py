@@ -97,7 +97,7 @@ def test_the_band_is_the_larger_of_series_and_recovered_stresses() -> None:
     assert narrow.half_width * 6.0 > 1.0  # the error is 1 of 6
     assert wide.half_width == pytest.approx(SAFETY * 10.0 / 6.0)
     assert "three meshes converge" in narrow.sentence()
-    assert "recovered stresses, the wider" in wide.sentence()
+    assert "recovered stresses of the finest mesh (the larger" in wide.sentence()
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, floor, log10
+from math import ceil, floor, isnan, log10
 
 import numpy as np
 
@@ -88,8 +88,10 @@ class AssemblyBand:
 
     def sentence(self) -> str:
         """What the band rests on."""
-        wider = "recovered stresses" if not self.series > self.recovered else "the series"
-        return f"{self.words}; the band is that of {wider}, the wider one"
+        of_series = self.series > self.recovered
+        wider = "the series" if of_series else "recovered stresses of the finest mesh"
+        larger = "" if isnan(self.series) else " (the larger estimate)"
+        return f"{self.words}; the error is estimated from {wider}{larger}"
 
 
 def finer_mesh(sizes: MeshSizes | None, band: float) -> str:
