@@ -10,6 +10,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import end_flexibilities as shafts
 from fe_drivetrain.cases.stability.clamped_plates import boss_rotation
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import min_safe
 from fe_drivetrain.elasticity.interfaces import fixed, rigid_face, rigid_point
 from fe_drivetrain.elasticity.mesh import generate
@@ -245,39 +246,42 @@ def answer(page: Page, found: Map, shown: int, low: float | None) -> None:
     thick = found.thick
     at_thinnest = 100 + found.error[shown, 0]
     least = {
-        f"{SHOWN:g} d flange, within {ALLOWED:g} %": low,
-        f"{SHOWN:g} d flange, within 5 %": min_safe(thick, found.error[shown], 5.0),
-        f"{found.ratios[-1]:g} d flange, within {ALLOWED:g} %": min_safe(
+        f"flange {SHOWN:g} d wide, within {ALLOWED:g} %": low,
+        f"flange {SHOWN:g} d wide, within 5 %": min_safe(thick, found.error[shown], 5.0),
+        f"flange {found.ratios[-1]:g} d wide, within {ALLOWED:g} %": min_safe(
             thick, found.error[-1], ALLOWED
         ),
     }
     page.answer(
-        "How thick must a flange that is held by its rim be for beam theory?",
+        "How thick must a flange that is held at its rim be for beam theory to apply?",
         (
-            f"Beam theory needs a flange at least {formatted(low, 2)} shaft diameters thick for "
+            f"Beam theory is within {ALLOWED:g}\u00a0% for flanges at least {formatted(low, 2)} "
             if low is not None
-            else f"No flange up to {thick[-1]:g} shaft diameters thick has, by beam theory, "
+            else f"Beam theory is within {ALLOWED:g}\u00a0% for no flange up to {thick[-1]:g} "
         )
-        + f"{ALLOWED:g}\u00a0%; at {thick[0]:g} diameters it shows "
+        + f"shaft diameters thick; for one of {thick[0]:g} diameters it gives "
         f"{formatted(at_thinnest, 2)}\u00a0% of the true rotation.",
         [
             *(
-                page.value(f"least thickness, {name} [d]", value)
+                page.value(f"least thickness, {name} [d]", rounded([value], 2)[0])
                 for name, value in least.items()
                 if value is not None
             ),
             page.value(
-                f"the beam's rotation over the true one, flange {thick[0]:g} d thick [%]",
-                at_thinnest,
+                f"rotation by the beam over the true one, flange {thick[0]:g} d thick [%]",
+                rounded([at_thinnest], 2)[0],
                 beside=100.0,
                 by="elements",
             ),
-            page.judged(WITH_PLATE, f"worst error with the flange as a plate, up to {PLATE:g} d"),
+            page.judged(
+                WITH_PLATE, f"worst error with a plate for the flange, up to {PLATE:g} d thick"
+            ),
         ],
         hero=CURVES,
         cautions=[
+            f"This is a flange {SHOWN:g} shaft diameters (d) wide; a wider one must be thicker.",
             "The rim is held all round, as by bolts close to it; flanges held elsewhere are not "
-            "covered."
+            "covered.",
         ],
     )
 

@@ -9,6 +9,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import end_flexibilities as shafts
 from fe_drivetrain.cases.references.torsion_meridian import torsion_bounds
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import min_safe
 from fe_drivetrain.elasticity.revolution import dofs, harmonic_response, meridian, surface_loads
 from fe_drivetrain.geometry import LENGTH_TOLERANCE, Shaft
@@ -251,28 +252,29 @@ def answer(page: Page, found: Map, filleted: Floats) -> None:
         return f"over\u00a0{found.lengths[-1]:g}" if value is None else formatted(value, 2)
 
     page.answer(
-        "How long must a shaft with a sharp step be for beam theory?",
-        f"Bent across a sharp step of {step:g}\u00a0:\u00a01, a beam needs a length of "
-        f"{length(least['bending'])} diameters for 5\u00a0%; with {more:.3f} diameters added at "
-        f"the step, {length(with_more)}.",
+        "How long must a shaft with a sharp step be for beam theory to apply?",
+        f"A beam model of a shaft with a sharp {step:g}\u00a0:\u00a01 step bends within 5\u00a0% "
+        f"from {length(least['bending'])} diameters of length, or {length(with_more)} if "
+        f"lengthened by {formatted(more, 2)}.",
         [
             *(
-                page.value(f"least length within 5 %, {name} [d]", value)
+                page.value(f"least length within 5 %, {name} [d]", rounded([value], 2)[0])
                 for name, value in sorted(least.items())
                 if value is not None
             ),
-            page.value("extra length that replaces the step, bending [d]", more),
+            page.value("length to add at the step, bending [d]", rounded([more], 2)[0]),
             page.judged(
                 WITH_EXTRA.format("bending"),
-                WITH_EXTRA.format("bending"),
-                "worst error with the extra length, bending, both halves as long as wide",
+                "worst error in bending with that length, halves at least as long as wide",
             ),
-            page.value(f"error in bending with the largest fillet, L = {AT:g} d [%]", filleted[-1]),
+            page.value(
+                f"error in bending with the largest fillet, {AT:g} d long [%]", filleted[-1]
+            ),
         ],
         hero=caption_of_errors(step),
         cautions=[
-            "Lengths are of both halves together, over the smaller diameter; below them the beam "
-            "is too stiff."
+            "Lengths are of both halves together, over the smaller diameter d; a beam model of a "
+            "shorter shaft is too stiff."
         ],
     )
 

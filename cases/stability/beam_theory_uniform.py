@@ -12,6 +12,7 @@ from fe_drivetrain.cases.references import rigid_ended_shafts
 from fe_drivetrain.cases.references.shaft_theory import Tube, flexure_stress
 from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.common import Bools, Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import min_safe
 from fe_drivetrain.elasticity.revolution import (
     along_sides,
@@ -260,28 +261,31 @@ def answer(page: Page, found: Map, first: float | None, corrected: float | None)
         "Timoshenko between rigid ends, tension within 1 %": found.least(error[PULLED][solid], 1.0),
         "Euler-Bernoulli, free ends, within 1 %": found.least(found.shear[solid], 1.0),
     }
-    nowhere = f"for no length up to {found.lengths[-1]:g}"
+
+    def reach(length: float | None) -> str:
+        if length is None:
+            return "at no length tried"
+        return f"from {formatted(length, 2)} diameters of length"
+
     page.answer(
-        "How short may a shaft be for beam theory?",
-        "Between rigid ends Timoshenko's beam is within 1\u00a0% "
-        + (f"from a length of {formatted(first, 2)}" if first is not None else nowhere)
-        + " diameters; with the ends' flexibility added, "
-        + (f"from {formatted(corrected, 2)}" if corrected is not None else nowhere)
-        + " for every bore.",
+        "How short may a shaft be for beam theory to apply?",
+        "Between rigid ends a Timoshenko beam's deflection is within 1\u00a0% "
+        f"{reach(first)}; with the ends' flexibility added, {reach(corrected)}.",
         [
             *(
-                page.value(f"least length, {name} [D]", value)
+                page.value(f"least length, {name} [D]", rounded([value], 2)[0])
                 for name, value in least.items()
                 if value is not None
             ),
             page.judged(
                 f"{BENT}: {CORRECTED}",
-                f"worst error of the deflection, ends' flexibility added, from {SHORTEST:g} D on",
+                f"worst error of the deflection, ends' flexibility added, from {SHORTEST:g} D",
             ),
         ],
         hero=CURVES,
         cautions=[
-            "Ends here are rigid, as between stiff flanges: softer ones disturb a shaft less."
+            "Ends are rigid here, as between stiff flanges; softer ends disturb the shaft less.",
+            "D is the shaft's diameter; with the ends' flexibility added any bore is included.",
         ],
     )
 

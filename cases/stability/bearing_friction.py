@@ -17,6 +17,7 @@ from fe_drivetrain.bearing import (
 from fe_drivetrain.bearing.skf_friction import BOUNDARY, MINERAL_FILM
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.report import trace
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Run
@@ -27,7 +28,8 @@ CARRIED, STARVED = 0.05, 0.5
 OIL = 100e-6
 PARAMETER = "viscosity times speed [mm2/s 1/min]"
 HERO = (
-    "Friction moment from standstill to starvation, at a tenth of the rating; shaded: a film, fed"
+    "Friction moment from standstill to starvation, at a tenth of the rating; shaded: oil film and "
+    "enough oil"
 )
 
 
@@ -161,19 +163,22 @@ def check_bounds(page: Page, diameter: float, low: float) -> None:
 def answer(page: Page, low: float, high: float, apart: tuple[float, float]) -> None:
     """State between which products of viscosity and speed models of friction can be trusted."""
     page.answer(
-        "Where do models of the friction of a bearing fail?",
-        f"Bearing 23180 has a film and enough oil from {formatted(low, 3)} to "
-        f"{formatted(high, 3)}\u00a0mm²/s per minute; below, boundary friction decides, above, "
-        "models part.",
+        "In which range may models of the friction of a bearing be trusted?",
+        "Bearing 23180 has an oil film and enough oil where viscosity times speed is "
+        f"{formatted(low, 3)} to {formatted(high, 3)}\u00a0mm²/s\u00a0×\u00a01/min; below, "
+        "boundary friction dominates; above, friction models disagree.",
         [
-            page.value(f"film carries from, {PARAMETER}", low),
-            page.value(f"oil is enough up to, {PARAMETER}", high),
+            page.value(f"oil film from, {PARAMETER}", rounded([low], 3)[0]),
+            page.value(f"enough oil up to, {PARAMETER}", rounded([high], 3)[0]),
             page.judged(
-                "SKF's model: moment to begin over that of slow motion", "starting moment over slow"
+                "SKF's model: moment to begin over that of slow motion",
+                "friction moment at the start over that in slow rotation",
             ),
-            page.value("sum over rollers over SKF's model between them, largest", apart[0]),
-            page.value("the same up to 1e8 mm2/s 1/min", apart[1]),
+            page.value(
+                "largest ratio of two models (sum over rollers, SKF) in that range", apart[0]
+            ),
+            page.value("largest ratio of the two models up to 1e8 mm2/s 1/min", apart[1]),
         ],
         hero=HERO,
-        cautions=["No measurement stands behind the bounds: they are of the published formulas."],
+        cautions=["The bounds follow from published formulas; no measurement confirms them."],
     )

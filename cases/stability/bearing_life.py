@@ -74,23 +74,31 @@ def answer(page: Page) -> None:
     counts = all(one.passed for one in page.checks if "counted" in one.quantity)
     still, swung = page.judged(HARDLY_MOVING), page.judged(SWUNG)
     page.answer(
-        "Beyond which lubricant, load and motion is the rating life of a bearing no longer one?",
-        "A rating life holds for viscosity ratios from 0.1 to 4 and P below C/2; beyond, the "
-        f"program gives a number {'and counts the time' if counts else 'without a sign'}.",
+        "For which lubricant, load and motion is the rating life of a bearing valid?",
+        "Rating lives are valid for viscosity ratios from 0.1 to 4 and loads below C/2; the "
+        f"program {'reports' if counts else 'does not report'} the time outside these limits.",
         [
-            page.judged(PROMISED),
-            page.judged(LOST),
-            page.judged(FLOWING, f"{FLOWING}, where material flows"),
-            page.judged(SWUNG, "least swing to either side for life within 5 % of rotation's"),
-            page.judged(HARDLY_MOVING, "life of a ring that hardly moves, over rotation's"),
+            page.judged(
+                PROMISED, "life factor by its formula at viscosity ratio 100, over its limit"
+            ),
+            page.judged(LOST, "largest exponent of the load in the modified life"),
+            page.judged(
+                FLOWING, "largest contact pressure at the first load above C/2 (steel yields)"
+            ),
+            page.judged(
+                SWUNG, "least swing to either side for a life within 5 % of that in rotation"
+            ),
+            page.judged(
+                HARDLY_MOVING, "life of a moving ring that swings by ±0.5°, over that in rotation"
+            ),
         ],
         hero=FACTORS,
         cautions=[
             f"A bearing that swings by less than {formatted(swung.value, 3)}\u00b0 to either side "
-            f"loses up to {100.0 * (1.0 - still.value):.0f} % of the life of its moving ring at as "
-            "many turns; fretting and false brinelling, which may end it, are not in the method.",
-            "A life at the fatigue limit is 50 times the basic one, whatever the load: read it as "
-            "'more than'.",
+            f"loses up to {100.0 * (1.0 - still.value):.0f} % of the life of its moving ring, at "
+            "the same number of turns; fretting and false brinelling are not considered.",
+            "At the fatigue limit the program gives 50 times the basic life (C/P)^p, whatever the "
+            "load: read it as 'more than'.",
         ],
     )
 

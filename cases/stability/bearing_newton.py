@@ -64,33 +64,38 @@ def answer(
     """State whether damped Newton's method always converges, and from where plain steps do not."""
     lost, worst = sum(column(rows, "not converged")), max(column(rows, FAILS))
     damped = (
-        f"all {formatted(cases)} random loads"
+        f"solves all {formatted(cases)} random loads"
         if lost == 0
-        else f"not {formatted(lost)} of {formatted(cases)} random loads"
+        else f"does not solve {formatted(lost)} of {formatted(cases)} random loads"
     )
     plain = (
-        f"without damping up to {worst:.0f}\u00a0% fail beyond a clearance of "
-        f"{formatted(rounded([last_safe], 2)[0], unit='')} times the rollers' deflection."
+        f"without it, up to {worst:.0f}\u00a0% fail once the clearance exceeds "
+        f"{formatted(rounded([last_safe], 2)[0], unit='')} roller deflections."
         if last_safe is not None
-        else "without damping none fails either, 0\u00a0%."
+        else "without it none fails either, 0\u00a0%."
     )
     figures = [
-        page.value("random loads that damped Newton leaves unsolved", lost, at_most=0.0),
-        page.value("random loads that fail without damping, worst clearance [%]", worst),
-        page.value("most steps of damped Newton", max(column(rows, "steps, worst"))),
-        page.value("least arm over pitch radius for small tilts", least_arm(arms)),
+        page.value(
+            "random loads that Newton's method with damping does not solve", lost, at_most=0.0
+        ),
+        page.value("random loads that fail without damping, at the worst clearance [%]", worst),
+        page.value("most steps of Newton's method with damping", max(column(rows, "steps, worst"))),
+        page.value(
+            "least arm of the moment for tilts below 10 mrad, over the pitch radius",
+            least_arm(arms),
+        ),
     ]
     if last_safe is not None:
-        name = "clearance over deflection up to which none fails without damping"
-        figures.insert(2, page.value(name, last_safe))
+        name = "clearance over roller deflection up to which none fails without damping"
+        figures.insert(2, page.value(name, rounded([last_safe], 2)[0]))
     page.answer(
-        "Does the equilibrium of a roller bearing converge, whatever its clearance and load?",
-        f"Damped Newton solves {damped}; {plain}",
+        "Is the equilibrium of a roller bearing found for every clearance and load?",
+        f"Newton's method with damping {damped}; {plain}",
         figures,
         hero=OVER_SHARE,
         cautions=[
-            "Loads that no roller can carry are refused: a single tapered row pushed open, or a "
-            "moment on contact normals that meet in the bearing's centre."
+            "Loads that the bearing cannot carry are rejected: thrust that pushes a single tapered "
+            "row apart, or a moment where all contact normals meet in the bearing's centre."
         ],
     )
 

@@ -38,8 +38,8 @@ REMEDIED = (
     "worst, nu = {:g}"
 )
 DISC_ERRORS = (
-    "Error of the bonded disc's stiffness in tetrahedra over bulk by shear modulus; shaded: plain "
-    "ones of 10 nodes within 1 %"
+    "Error of the bonded disc's stiffness in tetrahedra over bulk by shear modulus; shaded, where "
+    "wide enough to be seen: plain 10-node ones within 1 %"
 )
 
 #: Length of the bent shaft over its diameter.

@@ -138,17 +138,19 @@ def answer(page: Page, swept: list[tuple[Outcomes, Outcomes]]) -> None:
     as_asked, finest = (float(extreme_parts.meshed(some)[-1]) for some in (bored, [*bored, *finer]))
     page.answer(
         "What becomes of a shaft or housing with extreme dimensions?",
-        f"Of {len(every)} extreme shapes {'none' if wrong == 0 else wrong} is meshed wrong: "
-        f"{refused} are refused with the allowed range; shafts are meshed up to a bore of "
-        f"{short(finest)} diameters.",
+        f"{wrong or 'None'} of {len(every)} extreme shapes {'are' if wrong > 1 else 'is'} meshed "
+        f"wrongly: {refused} are rejected with the allowed range; bores may reach {short(finest)} "
+        "of a shaft's outer diameter.",
         [
-            page.value("shapes meshed wrong", wrong, at_most=0.0),
-            page.value("refusals without the allowed range or the fix", unclear, at_most=0.0),
-            page.value("shapes refused", refused),
-            page.value("largest bore over diameter, size as asked", as_asked),
-            page.value("largest bore over diameter, size of two walls", finest),
+            page.value("shapes meshed wrongly", wrong, at_most=0.0),
             page.value(
-                "worst error of a volume or area, over what the elements' edges allow",
+                "rejections that do not state the allowed range or a remedy", unclear, at_most=0.0
+            ),
+            page.value("shapes rejected", refused),
+            page.value("largest bore over outer diameter, element size as asked for", as_asked),
+            page.value("largest bore over outer diameter, element size twice the wall", finest),
+            page.value(
+                "worst error of a volume or area, over what element edges allow",
                 max(one.allowed for one in meshed),
                 at_most=1.0,
             ),

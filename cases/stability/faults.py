@@ -150,26 +150,29 @@ def answer(page: Page, killed: list[Record], half: list[bool], found: Any) -> No
     spoilt = sum(broken(killed))
     whole = sum(is_as_expected(fault) for fault in found["faults"])
     page.answer(
-        "What is on disk after a kill, a full disk or a damaged cache?",
-        f"{spoilt or 'None'} of {len(killed)} kills left half a result, and {wrong or 'none'} of "
-        f"{tries} damaged meshes gave other numbers; written in place, {sum(half)} of {len(half)} "
-        "kills did.",
+        "What is left on disk after a killed run, a full disk or a damaged cache?",
+        f"{spoilt or 'None'} of {len(killed)} killed runs left an incomplete result (written in "
+        f"place: {sum(half)} of {len(half)}), and {wrong or 'none'} of {tries} damaged mesh files "
+        "changed a number.",
         [
-            page.value(f"kills that left half a result, of {len(killed)}", spoilt, at_most=0.0),
             page.value(
-                f"damaged meshes read back as other numbers, of {tries}", wrong, at_most=0.0
+                f"killed runs that left an incomplete result, of {len(killed)}", spoilt, at_most=0.0
             ),
+            page.value(f"damaged mesh files that changed a number, of {tries}", wrong, at_most=0.0),
             page.value(
-                f"other faults that leave whole results, of {len(EXPECTED)}",
+                f"other faults that leave complete results, of {len(EXPECTED)}",
                 whole,
                 at_least=len(EXPECTED),
             ),
             page.value("hidden files left after the next run", found["left"], at_most=0.0),
-            page.value(f"half results if written in place, of {len(half)} kills", sum(half)),
+            page.value(
+                f"incomplete results if written in place, of {len(half)} killed runs", sum(half)
+            ),
         ],
         hero=PICTURE,
         cautions=[
-            "Kills end a process; what a power cut leaves depends on the disk, and was not tried."
+            "Only processes were killed; what a power cut leaves depends on the disk, and was not "
+            "tried."
         ],
     )
 

@@ -152,15 +152,17 @@ def answer(page: Page, slopes: dict[str, float], last: float, band: float) -> No
     """State how stress grows, and where formulas end."""
     page.answer(
         "How small may a fillet be, and how thin a shaft, for its stress to be known?",
-        f"Bending stress grows as the radius to minus {slopes['bending']:.3f}, as at a sharp "
-        f"corner; formulas hold 5\u00a0% up to a bore of {last:.2g} diameters.",
+        f"Bending stress grows as 1/radius to the power {slopes['bending']:.3f}, without limit; "
+        f"formulas for solid shafts are within 5\u00a0% up to a bore of {last:.2g} diameters.",
         [
-            page.value("exponent of the radius in tension", slopes["tension"]),
-            page.value("exponent of the radius in bending", slopes["bending"]),
-            page.value("exponent of the radius in torsion", slopes["torsion"]),
-            page.value("bore over diameter up to which formulas hold 5 %", last),
-            page.value("largest band of a factor, relative", band),
+            page.value("exponent of 1/radius, tension", round(slopes["tension"], 3)),
+            page.value("exponent of 1/radius, bending", round(slopes["bending"], 3)),
+            page.value("exponent of 1/radius, torsion", round(slopes["torsion"], 3)),
+            page.value("bore over diameter up to which formulas are within 5 %", last),
+            page.value("largest uncertainty of a stress concentration factor [%]", 100 * band),
         ],
         hero=SHARP,
-        cautions=["A fillet of a thousandth of the step is no longer that of a drawing."],
+        cautions=[
+            "Radii below a thousandth of the step are for study only: no drawing has such a fillet."
+        ],
     )

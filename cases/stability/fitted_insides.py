@@ -9,6 +9,7 @@ import numpy as np
 from fe_drivetrain.bearing import CataloguePage, fitted_rollers
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import InputError
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.report import bars
 from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
@@ -21,7 +22,7 @@ PAGES: tuple[dict[str, float | str], ...] = (
 )
 FACTOR = "value over that printed"
 SHARE = "insides that fit, of all tried [%]"
-HERO = "Wrong values of a page over printed ones, up to which insides fit"
+HERO = "Wrong catalogue values over printed ones, up to which rollers and races fit them"
 REFUSED = "pages without an inside that are refused with the reason"
 
 
@@ -156,14 +157,21 @@ def answer(
         for key in ("C", "C0", "width")
     }
     page.answer(
-        "How wrong may a value of a bearing's page be before no inside fits?",
-        f"C beyond {formatted(spans['C'], 2)}, C0 beyond {formatted(spans['C0'], 2)} times the "
-        "printed value is refused with the reason; smaller mistakes pass.",
+        "How wrong may a catalogue value of a bearing be before the program rejects it?",
+        f"A rating C above {formatted(spans['C'], 2)} times, or C0 above "
+        f"{formatted(spans['C0'], 2)} times, the printed value is rejected with the reason; "
+        "smaller mistakes may go unnoticed.",
         [
-            page.value("largest factor of C that still fits", spans["C"]),
-            page.value("largest factor of C0 that still fits", spans["C0"]),
-            page.value("largest factor of the width that still fits", spans["width"]),
+            page.value("largest factor on C that is still accepted", rounded([spans["C"]], 2)[0]),
+            page.value("largest factor on C0 that is still accepted", rounded([spans["C0"]], 2)[0]),
+            page.value(
+                "largest factor on the width that is still accepted",
+                rounded([spans["width"]], 2)[0],
+            ),
         ],
         hero=HERO,
-        cautions=["A value that is wrong by less goes unnoticed: the ensemble then fits it."],
+        cautions=[
+            "The program looks for rollers and races that fit the catalogue values: it rejects a "
+            "value only where none fit."
+        ],
     )

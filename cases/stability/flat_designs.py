@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.least_shafts import bending_stiffness, least_bored_shaft
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import decades
 from fe_drivetrain.comparison.constrained_minimum import (
     ACTIVE,
@@ -88,21 +89,28 @@ def run(run: Run, page: Page) -> None:
     with run.step("two limits nearly equal"):
         # no point is as far as limits that count as met, where round-off decides
         apart = limits_together(page, 1.0 if run.quick else 3.0)
+    share = rounded([shortest], 1)[0]
     page.answer(
-        "When does the least design of a search mean little?",
-        f"Where values weigh less than {formatted(shortest, 1)} of the whole, or limits meet: "
-        "then values or prices are open. The least itself is right.",
+        "When does a search for the lightest design leave its values open?",
+        "The lightest mass is right, but the bore of a section with under "
+        f"{formatted(100 * share, unit='%')}\u00a0% of the mass is arbitrary, like sensitivities "
+        "to coinciding limits.",
         [
-            page.value("least share of the mass with which a value is found", shortest),
-            page.value("distance of a limit from ends of ranges, for its price to count", idle),
-            page.value("distance of two limits, for prices of their own", apart),
+            page.value("smallest share of the mass for which the bore is found [%]", 100 * share),
+            page.value(
+                "relative distance from where a limit starts to act, for its sensitivity", idle
+            ),
+            page.value(
+                "relative distance of two limits, for separate sensitivities",
+                rounded([apart], 1)[0],
+            ),
         ],
         hero=FLAT,
         cautions=[
-            "What a search says of flat values comes of its other starts: with one start it says "
-            "nothing.",
-            f"Limits are kept by {100 * MARGIN:g} % more than asked for: one that is met by less "
-            "than that has a price.",
+            "The program warns of arbitrary values only if it searches from several starting "
+            "points.",
+            f"Limits are kept with a margin of {100 * MARGIN:g} %: one that is met by less than "
+            "that shows a sensitivity although it does not act.",
         ],
     )
 

@@ -109,26 +109,35 @@ def answer(page: Page, rows: list[Record], share: float, waves: float) -> None:
     lost = sum(row["not converged"] for row in rows)
     worst = max(rows, key=lambda row: row[FAILS])
     page.answer(
-        "How finely does a flexible ring have to be described for its rollers?",
-        f"Peak rollers keep {100 * ENOUGH:.0f}\u00a0% without ring shapes below {share:g} of a "
-        f"contact's softness and harmonics above {waves:.0f}; damped Newton "
-        + ("always converges." if lost == 0 else f"fails in {lost} cases."),
+        "How finely must a flexible bearing ring be modelled for the loads of its rollers?",
+        f"Ring harmonics up to {waves:.0f} and ring shapes with at least {share:g} times a roller "
+        f"contact's compliance give the peak roller load within {100 * ENOUGH:.0f}\u00a0%.",
         [
             page.value(
-                "softness of shapes left out, over a contact's, up to which peaks keep 1 %",
+                "compliance over a roller contact's up to which shapes may be left out",
                 share,
                 at_least=SOFTEST_LEFT_OUT,
                 by="program",
             ),
-            page.value("harmonics that the worst wall needs for 1 %", waves),
-            page.value("load cases that damped Newton leaves unsolved", lost, at_most=0.0),
-            page.value("loads that fail without damping, worst [%]", worst[FAILS]),
-            page.value("most steps of damped Newton", max(row["steps, worst"] for row in rows)),
+            page.value("ring harmonics needed, worst wall thickness", waves),
+            page.value(
+                "load cases that Newton's method with damping does not solve", lost, at_most=0.0
+            ),
+            page.value("loads that fail without damping, at worst [%]", worst[FAILS]),
+            page.value(
+                "most steps of Newton's method with damping",
+                max(row["steps, worst"] for row in rows),
+            ),
         ],
         hero=LEFT_OUT,
         cautions=[
-            "Without damping most cases are lost at "
-            f"{formatted(worst['load over nominal'], 2, '')} of nominal loads, a clearance of "
+            (
+                "Newton's method with damping always converges"
+                if lost == 0
+                else f"Newton's method with damping fails in {lost} cases"
+            )
+            + f"; without it, {worst[FAILS]:.0f}\u00a0% of loads fail at "
+            f"{formatted(worst['load over nominal'], 2, '')} of nominal load, a clearance of "
             f"{worst['clearance [µm]']:.0f}\u00a0µm and a wall of {worst['wall [mm]']:.0f}\u00a0mm."
         ],
     )

@@ -193,26 +193,29 @@ def answer(
     """State where curving folds elements, and the errors of the peak stress with them [%]."""
     left = total(of["refined"])
     page.answer(
-        "When do curved elements fold on a coarse fillet, and what does that do to the answer?",
+        "When do curved elements fold on a coarse fillet, and how wrong is the stress then?",
         (
-            f"Below {safe:g} elements a turn curving folds elements on a fillet: "
+            f"With fewer than {safe:g} elements per turn, curved elements fold on a fillet: "
             if safe is not None
-            else "Curving folds elements on a fillet in every mesh of the sweep: "
+            else "Curved elements fold on a fillet in every mesh of the sweep: "
         )
-        + f"the peak stress is wrong by up to {worst_peak:.0f}\u00a0%, repaired by "
-        f"{repaired_peak:.0f}\u00a0%.",
+        + f"peak stress is wrong by up to {worst_peak:.0f}\u00a0%, or {repaired_peak:.0f}\u00a0% "
+        "after repair.",
         [
-            *([page.value("least elements a turn without folds", safe)] if safe else []),
-            page.value("worst error of the peak stress, left folded [%]", worst_peak),
-            page.value("worst error of the peak stress, repaired [%]", repaired_peak),
-            page.judged(REPAIRED, "torsional stiffness, coarsest mesh, repaired", "meridian"),
-            page.value("folded elements, as curved, whole sweep", total(of["as curved"])),
+            *([page.value("least elements per turn without folded ones", safe)] if safe else []),
+            page.value("worst error of the peak stress, elements folded [%]", round(worst_peak)),
+            page.value(
+                "worst error of the peak stress, elements repaired [%]", round(repaired_peak)
+            ),
+            page.judged(
+                REPAIRED, "torsional stiffness, coarsest mesh, elements repaired", "meridian"
+            ),
+            page.value("folded elements before repair, whole sweep", total(of["as curved"])),
             page.value("folded elements after the program's repair", left, at_most=0.0),
         ],
         hero=PEAKS,
         cautions=[
-            "A solver seldom notices folded elements; only a check of the Jacobian inside each "
-            "element does."
+            "A solver seldom notices folded elements: check the Jacobian inside each element."
         ],
     )
 

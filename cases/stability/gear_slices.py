@@ -5,6 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.rated_gears import rated_meshes
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import decades, safe_range
 from fe_drivetrain.gear import (
     SLICES,
@@ -17,6 +18,7 @@ from fe_drivetrain.gear import (
     supported,
 )
 from fe_drivetrain.report import gear_pair
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 
 PAIR = rated_meshes()["NREL 5 MW, stage 1, sun and planet"].pair
@@ -68,22 +70,27 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, ends: dict[int, float], jam: float, softest: float) -> None:
     """State the misalignments up to which slices have the load, and what ends equilibrium."""
     page.answer(
-        "How many slices does the load over a misaligned face width need?",
-        f"{SLICES} slices give face load factors within 2\u00a0% up to a misalignment of "
-        f"{ends[SLICES]:.0f} mean deflections; with {1e3 * PLAY:.1f}\u00a0mm play both flanks "
-        f"touch from {jam:.0f} on.",
+        "How many slices over the face width does a misaligned gear mesh need?",
+        f"{SLICES} slices give the face load factor within 2\u00a0% for misalignments up to "
+        f"{formatted(rounded([ends[SLICES]], 2)[0])} mean tooth deflections; {min(ends)} slices "
+        f"only up to {formatted(rounded([ends[min(ends)]], 2)[0])}.",
         [
             *(
-                page.value(f"misalignment over mean deflection for 2 %, {slices} slices", end)
+                page.value(
+                    f"largest misalignment over mean tooth deflection, {slices} slices",
+                    rounded([end], 2)[0],
+                )
                 for slices, end in sorted(ends.items(), key=lambda one: one[0] != SLICES)
             ),
-            page.value(f"misalignment over mean deflection that uses up {1e3 * PLAY:g} mm", jam),
-            page.value("softest supports with an equilibrium [N/m]", softest),
+            page.value("misalignment over mean tooth deflection from which both flanks touch", jam),
+            page.value("softest supports for which an equilibrium is found [N/m]", softest),
         ],
         hero=ERRORS,
         cautions=[
-            "On softer supports gears turn by more than a radian before these carry: the program "
-            "says that it has not converged."
+            f"With {1e3 * PLAY:g}\u00a0mm backlash both flanks touch from a misalignment of "
+            f"{formatted(jam, 2)} mean tooth deflections on.",
+            "On softer supports gears turn by more than a radian before the supports carry: the "
+            "program says that it has not converged.",
         ],
     )
 

@@ -36,6 +36,8 @@ LIVES = (
 )
 #: Laminae that ISO/TS 16281 asks for at least.
 ISO_LAMINAE = 30
+#: Load histories of each wind speed that IEC 61400-1 asks for at least.
+IEC_HISTORIES = 6.0
 
 
 @case(
@@ -57,27 +59,32 @@ def answer(page: Page, enough: int, needed: float, scatter: float) -> None:
     percent = f"{100 * ENOUGH:g}"
     page.answer(
         "How many laminae and how many load histories does a rating life need?",
-        f"Lives need {enough} laminae of a profiled roller and {formatted(needed, 3)} histories of "
-        f"each wind speed for {percent}\u00a0%; the standard's stress riser fits "
-        f"{ISO_LAMINAE} laminae only.",
+        f"A rating life within {percent}\u00a0% needs {enough} laminae per profiled roller and "
+        f"{formatted(needed, 3)} load histories per wind speed, while IEC 61400-1 asks for "
+        f"{IEC_HISTORIES:g}.",
         [
             page.value(
-                f"laminae for {percent} %, profiled roller", enough, at_most=ISO_LAMINAE, by="ISO"
+                f"laminae per profiled roller for {percent} %",
+                enough,
+                at_most=ISO_LAMINAE,
+                by="ISO",
             ),
             page.value(
-                f"histories of each wind speed for {percent} %",
+                f"load histories per wind speed for {percent} %",
                 needed,
-                beside=6.0,
+                beside=IEC_HISTORIES,
                 by="IEC 61400-1",
             ),
-            page.value("scatter of damage, one history of each wind speed [%]", scatter),
-            page.value(f"share of life with the stress riser, {ISO_LAMINAE} laminae", thirty),
-            page.value("share of life with the stress riser, very many laminae", many),
+            page.value("scatter of damage with one history per wind speed [%]", scatter),
+            page.value(f"life with over without the stress riser, {ISO_LAMINAE} laminae", thirty),
+            page.value("life with over without the stress riser, very many laminae", many),
         ],
         hero=LIVES,
         cautions=[
-            "Scatter is that of surrogate loads: rare large loads of a real site decide how many "
-            "histories are needed."
+            f"The standard's stress riser at roller ends is right for {ISO_LAMINAE} laminae only: "
+            "with more, it shortens the life less.",
+            "The scatter is that of artificial loads: rare large loads of a real site decide how "
+            "many histories are needed.",
         ],
     )
 

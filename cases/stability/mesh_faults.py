@@ -69,31 +69,33 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, kinds: list[Record], accepted: float, cost: float) -> None:
     """State how many kinds of faults are found, and what one costs that is not."""
     found = column(kinds, FOUND).count(True)
-    lost = page.judged(CRACKED, "share of bending stiffness lost, half a section doubled", "Tada")
+    lost = page.judged(CRACKED, "bending stiffness lost, half a section doubled", "Tada", unit="%")
     page.answer(
         "Does the program find a faulty mesh before it solves it?",
         (
-            f"All {found} kinds of faults are"
+            f"All {found} kinds of mesh faults are"
             if found == len(kinds)
-            else f"Only {found} of {len(kinds)} kinds of faults are"
+            else f"Only {found} of {len(kinds)} kinds of mesh faults are"
         )
-        + " named with their place before the solve; unnoticed, nodes doubled over half a section "
-        f"cost {100 * lost.value:.0f}\u00a0% of the stiffness.",
+        + " reported with their place before solving; unnoticed, nodes doubled over half a section "
+        f"would cost {lost.value:.0f}\u00a0% of stiffness.",
         [
             page.value(
-                f"kinds of faults named with their place, of {len(kinds)}",
+                f"kinds of mesh faults reported with their place, of {len(kinds)}",
                 found,
                 at_least=len(kinds),
             ),
             lost,
-            page.value(f"largest scale of lengths that passes, shaft of {DIAMETER:g} m", accepted),
-            page.value("widest part that passes [m]", WIDEST),
-            page.value("time of the check over that of assembly [%]", 100 * cost),
+            page.value(
+                f"largest wrong factor on lengths that passes, shaft of {DIAMETER:g} m", accepted
+            ),
+            page.value("largest part that is accepted [m]", WIDEST),
+            page.value("time of the check over that of assembling the stiffness [%]", 100 * cost),
         ],
         hero=CRACKS,
         cautions=[
-            f"Lengths in a wrong unit pass where parts stay below {WIDEST:g}\u00a0m: inches for "
-            "centimetres cannot be told from a larger machine."
+            "Lengths in a wrong unit are not noticed where parts stay below "
+            f"{WIDEST:g}\u00a0m: inches taken for centimetres look like a larger machine."
         ],
     )
 

@@ -31,8 +31,8 @@ SETTLED = 1e-10  # of a torque, that settled nodes may lose to round-off
 FACTOR = 2.0  # on the error of rings that share their nodes, that is accepted
 
 TORQUE = (
-    "Torque that a tie loses, of the torque, over the elements round; slave twice as fine; shaded: "
-    f"curved facets below {100 * LOST:g} %"
+    "Share of the torque that a tie loses, over the elements round; slave twice as fine; shaded: "
+    f"curved elements below {100 * LOST:g} %"
 )
 GAP, FINER, APART = "fail to balance", "finer face", "lie further apart"
 """Words by which the messages of ties are recognised."""
@@ -248,25 +248,36 @@ def show(page: Page, settled: list[Record], as_meshed: list[Record]) -> None:
     needed = {nodes: round_needed(rows) for nodes, rows in of.items()}
     worst = 100 * np.nanmax(column(of[8], "torque lost"))
     lost, ratio = max(column(settled, "torque lost")), settled[-1]["ratio"]
+    unequal = min(r["ratio"] for r in settled if r["ratio"] > 1)
     page.answer(
-        "How fine must the meshes of a tied cylinder be, and how far apart may they be?",
-        f"A tied cylinder loses under {100 * LOST:g}\u00a0% of its torque from {needed[10]} curved "
-        f"or {needed[8]} straight elements round; settled nodes lose "
-        + ("nothing" if lost < SETTLED else f"{formatted(100 * lost, 2)}\u00a0%")
-        + f" up to {ratio:g}\u00a0:\u00a01.",
+        "How many elements round does a tied cylinder need to pass on its torque?",
+        f"A tied cylinder needs {needed[10]} curved or {needed[8]} straight elements round to lose "
+        f"under {100 * LOST:g}\u00a0% of its torque; node-by-node ties miss the stress by "
+        f"{100 * node.max():.0f}\u00a0%.",
         [
-            page.value(f"curved elements round for {100 * LOST:g} %", needed[10]),
-            page.value(f"straight elements round for {100 * LOST:g} %", needed[8]),
-            page.value("worst torque lost, straight facets as meshed [%]", worst),
-            page.value("worst torque lost, nodes settled [%]", 100 * lost, at_most=100 * SETTLED),
-            page.value("worst error of torsional stiffness, settled [%]", 100 * max(stiffness)),
-            page.value("worst error of the stress, node by node, settled [%]", 100 * node.max()),
+            page.value(
+                f"curved elements round for under {100 * LOST:g} % of torque lost", needed[10]
+            ),
+            page.value(
+                f"straight elements round for under {100 * LOST:g} % of torque lost", needed[8]
+            ),
+            page.value("worst torque lost, straight elements, nodes not moved [%]", worst),
+            page.value(
+                "worst torque lost, nodes moved onto the other face [%]",
+                100 * lost,
+                at_most=100 * SETTLED,
+            ),
+            page.value("worst error of torsional stiffness, nodes moved [%]", 100 * max(stiffness)),
+            page.value("worst error of the stress, tied node by node [%]", round(100 * node.max())),
         ],
         hero=TORQUE,
         cautions=[
-            "Settling moves nodes of the slave onto the master's mesh; a tie as meshed is only "
-            "warned of.",
-            "Node by node with a coarser slave stress is wrong at every ratio: use mortar ties.",
+            "Dangerous: a coarser slave tied node by node gives wrong stresses at every ratio of "
+            f"element sizes from {unequal}\u00a0:\u00a01, even with nodes moved: use mortar ties.",
+            "Nodes of the slave moved onto the master's face lose "
+            + ("no torque" if lost < SETTLED else f"{formatted(100 * lost, 2)}\u00a0% of torque")
+            + f", with elements up to {ratio:g} times as many as on the other face; if they are "
+            "not moved, the program only warns.",
         ],
     )
     page.say(

@@ -242,28 +242,31 @@ def answer(page: Page, rows: list[Record]) -> None:
     silent = int(((worst >= FOUR_DIGITS) & ~warned).sum())
     solved = min(row["ratio"] for row in rows if not row["refused"])
     page.answer(
-        "How soft may a spring be that alone holds a motion of a shaft?",
-        "Four digits are right down to a spring of "
-        f"{formatted(safe, 2, '')} of the body's stiffness; the program "
+        "How soft may a spring be that alone restrains a motion of a shaft?",
+        "A motion is correct to four digits if its spring has at least "
+        f"{formatted(safe, 2, '')} of the shaft's stiffness; the program "
         + (
-            f"warns from {formatted(WEAK, 2, '')} down."
+            f"warns below {formatted(WEAK, 2, '')}."
             if silent == 0
-            else f"misses {silent} wrong answers."
+            else f"does not warn of {silent} wrong results."
         ),
         [
-            page.value("least stiffness for four digits, over the body's", safe),
-            page.value("stiffness below which the program warns, over the body's", WEAK),
-            page.value("least stiffness that it answers, over the body's", solved),
-            page.value("answers without four digits and without a warning", silent, at_most=0.0),
+            page.value("least stiffness for four correct digits, over the shaft's", safe),
+            page.value("stiffness below which the program warns, over the shaft's", WEAK),
+            page.value("least stiffness that the program accepts, over the shaft's", solved),
             page.value(
-                "worst error, held rigidly and moment over stiffness added",
+                "results without four correct digits and without a warning", silent, at_most=0.0
+            ),
+            page.value(
+                "worst error if held rigidly, and moment over stiffness added",
                 max(column(rows, "remedy")),
             ),
         ],
         hero=caption_of_errors(max(rows, key=lambda row: float(row["least safe"]))["joint"]),
         cautions=[
-            "Digits are lost in the soft motion alone, one for each tenth of the stiffness; the "
-            "joint that loses them first counts."
+            "The shaft's stiffness is Young's modulus times length here; of several joints, the "
+            "one that loses digits first counts.",
+            "Only the softly held motion loses digits: one for every factor of ten in stiffness.",
         ],
     )
 

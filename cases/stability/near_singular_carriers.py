@@ -96,24 +96,29 @@ def answer(
     solved = factors[np.isfinite(imbalance)]
     refused = len(factors) - len(solved)
     ends = {
-        "softest carrier in balance, over the library's": low,
-        "stiffest carrier in balance": high,
+        "softest carrier in balance, over its real stiffness": low,
+        "stiffest carrier in balance, over its real stiffness": high,
     }
     page.answer(
-        "How soft or stiff may a planet carrier be before its torque balance is lost?",
-        f"A carrier hands on its torque within {formatted(WITHIN, 2, '')} at "
-        f"{range_text(page.limits[-1])} times its stiffness; {refused} of {len(factors)} "
-        "stiffnesses, all softer, are refused.",
+        "How soft or stiff may a planet carrier be before its torques no longer balance?",
+        f"The torques on a carrier balance within {formatted(WITHIN, 2, '')} from "
+        f"{range_text(page.limits[-1])} times its real stiffness; {refused} of {len(factors)} "
+        "tested stiffnesses, all softer, are rejected.",
         [
             *(page.value(name, end) for name, end in ends.items() if end is not None),
-            page.value("softest that is solved, over the library's", solved.min()),
-            page.judged(BALANCE, "imbalance of torque at the library's stiffness"),
-            page.judged(TO_RIGID, "exponent of the difference to a rigid carrier", "springs"),
+            page.value("softest carrier that is solved, over its real stiffness", solved.min()),
+            page.judged(BALANCE, "imbalance of the torques at the real stiffness"),
+            page.judged(
+                TO_RIGID,
+                "exponent of the stiffness in the difference to a rigid carrier",
+                "springs",
+            ),
         ],
         hero=ERRORS,
         cautions=[
-            "Just beyond that range it still gets an answer: torque is out of balance by up to "
-            f"{formatted(100 * np.nanmax(imbalance), 2)}\u00a0% in the sweep."
+            "Just outside that range the program still gives a result: the torques are out of "
+            f"balance by up to {formatted(100 * np.nanmax(imbalance), 2)}\u00a0% in the sweep.",
+            "The real stiffness is that of the carrier in the program's library of drivetrains.",
         ],
     )
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.mathieu import exact_growth, stepped_growth, varying_spring
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.dynamics import parametric_growth
 from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.number_text import formatted
@@ -24,15 +25,15 @@ def answer(page: Page, bounds: dict[float, float], undamped: dict[float, float])
     needed = {e: 100.0 * bounds[e] * e / 4.0 for e in (ANSWERED, *others)}
     grown = float(np.exp(2.0 * np.pi * undamped[ANSWERED] * ANSWERED / 4.0))
     page.answer(
-        "How much damping stops a varying mesh stiffness from making motion grow?",
-        f"A mesh stiffness that varies by {100 * ANSWERED:g}\u00a0% at twice a natural frequency "
-        f"needs {formatted(needed[ANSWERED], 3)}\u00a0% of critical damping; with less, motion "
-        "grows until teeth part.",
+        "How much damping stops a varying gear mesh stiffness from making vibration grow?",
+        f"A mesh stiffness that varies by ±{100 * ANSWERED:g}\u00a0% at twice a natural frequency "
+        f"needs {formatted(needed[ANSWERED], 3)}\u00a0% of critical damping; with less, vibration "
+        "grows until the teeth separate.",
         [
             *(
                 page.value(
-                    f"damping needed, stiffness varying by {100 * e:g} % [%]",
-                    percent,
+                    f"damping needed, stiffness varying by ±{100 * e:g} % [%]",
+                    rounded([percent], 3)[0],
                     beside=100.0 * e / 4.0,
                     by="first order",
                 )
@@ -40,11 +41,11 @@ def answer(page: Page, bounds: dict[float, float], undamped: dict[float, float])
             ),
             page.judged(
                 STOPPED.format(ANSWERED),
-                f"damping ratio over a quarter of the variation, {100 * ANSWERED:g} %",
+                f"damping ratio over a quarter of the variation, ±{100 * ANSWERED:g} %",
                 "first order",
             ),
             page.value(
-                f"growth in a natural period, undamped, varying by {100 * ANSWERED:g} %",
+                f"growth factor per natural period, undamped, ±{100 * ANSWERED:g} %",
                 grown,
                 beside=float(np.exp(np.pi * ANSWERED / 2.0)),
                 by="first order",

@@ -68,30 +68,32 @@ def answer(page: Page, ranges: list[Record], fallback: float) -> None:
     low = max(found["safe from"] or 0.0 for found in ranges)
     high = min(found["to"] or np.inf for found in ranges)
     page.answer(
-        "Which penalty may stand in place of a rigid, averaged or tied coupling?",
+        "Which penalty stiffness may replace a rigid, averaged or tied coupling?",
         (
-            f"Penalties keep four digits of all couplings from {formatted(low, 2, '')} to "
-            f"{formatted(high, 2, '')} times the mean stiffness; "
+            "All couplings are correct to four digits with penalties of "
+            f"{formatted(low, 2, '')} to {formatted(high, 2, '')} times the mean stiffness; "
             if low <= high
-            else "No penalty keeps 4 digits of all couplings; "
+            else "No penalty makes all couplings correct to 4 digits; "
         )
-        + "elimination, which the program uses, needs no such choice.",
+        + "the program eliminates them instead, without a penalty.",
         [
-            page.value("least penalty for four digits, worst coupling", low),
-            page.value("largest penalty for four digits, worst coupling", high),
+            page.value("least penalty for four correct digits, worst coupling", low),
+            page.value("largest penalty for four correct digits, worst coupling", high),
             page.value(
-                "error of the best penalty, worst coupling",
+                "error with the best penalty, worst coupling",
                 max(found["least error"] for found in ranges),
                 at_most=FOUR_DIGITS,
             ),
             page.value(
-                "error of the program where multigrid fails on a penalty of a million",
+                "error of the program where multigrid fails with a penalty of a million",
                 fallback,
                 at_most=FOUR_DIGITS,
             ),
         ],
         hero=caption_of_errors(next(iter(KINDS))),
-        cautions=["The range depends on mesh and coupling: no penalty is known to be safe before."],
+        cautions=[
+            "The range depends on mesh and coupling: no penalty is known in advance to be safe."
+        ],
     )
 
 

@@ -9,6 +9,7 @@ from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.cases.stability import other_precisions
 from fe_drivetrain.cases.stability.other_precisions import BORE, DIAMETER
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import FOUR_DIGITS, in_words, safe_range
 from fe_drivetrain.report import crosses, trace
 from fe_drivetrain.report.number_text import formatted
@@ -122,13 +123,16 @@ def answer(page: Page, rows: list[Record], highest: dict[str, dict[str, float | 
 
     answers = np.array(column(rows, key("bending", PROGRAM)))
     page.answer(
-        "How slender may a solid be before its stiffness has lost its digits?",
-        "A tube keeps four digits of its bending stiffness up to L/D\u00a0=\u00a0"
-        f"{reach('bending', DOUBLE)} in the 64 bits of the program; 32 bits would end at "
-        f"{reach('bending', SHORT)}.",
+        "How slender may a solid body be before round-off spoils its stiffness?",
+        "The program computes with 64 bits: a tube's bending stiffness is correct to four digits "
+        f"up to L/D\u00a0=\u00a0{reach('bending', DOUBLE)}; with 32 bits, only up to "
+        f"L/D\u00a0=\u00a0{reach('bending', SHORT)}.",
         [
             *(
-                page.value(f"largest L/D for four digits, {load}, {LIMITS[precision]}", high)
+                page.value(
+                    f"largest L/D for four correct digits, {load}, {LIMITS[precision]}",
+                    rounded([high], 3)[0],
+                )
                 for load, precision in (
                     ("bending", DOUBLE),
                     ("bending", SHORT),
@@ -139,7 +143,7 @@ def answer(page: Page, rows: list[Record], highest: dict[str, dict[str, float | 
             ),
             page.judged(SLOPE.format("bending"), "exponent of L/D in the error, bending", "theory"),
             page.value(
-                "worst error that the program answers with, bending",
+                "worst error of a result that the program gives, bending",
                 float(answers[np.isfinite(answers)].max()),
                 at_most=1e-2,
                 by="program",
@@ -147,7 +151,8 @@ def answer(page: Page, rows: list[Record], highest: dict[str, dict[str, float | 
         ],
         hero=caption_of_errors("bending"),
         cautions=[
-            "The error is that of round-off alone, on one mesh; finer meshes hardly change it."
+            "L/D is length over diameter. The error is that of round-off alone; finer meshes "
+            "hardly change it."
         ],
     )
 

@@ -9,6 +9,7 @@ from fe_drivetrain.bearing.operating_clearance import FitState, Seats, Warm, fit
 from fe_drivetrain.bearing.press_fits import Ring, RingMaterial, fit_pressure
 from fe_drivetrain.cases import case
 from fe_drivetrain.comparison import last_within
+from fe_drivetrain.report.number_text import formatted
 from fe_drivetrain.report.suite import Page, Record, Run
 
 STEEL = RingMaterial(206e9, 0.3, 7850.0, 12e-6)
@@ -133,11 +134,11 @@ def run(run: Run, page: Page) -> None:
     with run.step("loose seats"):
         least, step = loose_seats(page, run.quick)
     page.answer(
-        "Where does the pressure of a press fit fail to be computed?",
-        f"Nowhere in bearings: rings down to walls of {thinnest:.0e} of the radius keep "
-        "six digits, and loose rings have no pressure.",
+        "For how thin a ring is the pressure of a press fit computed correctly?",
+        f"The pressure is correct to six digits down to ring walls of {formatted(thinnest, 1, '')} "
+        "of the radius, thinner than any bearing's; loose rings have none.",
         [
-            page.value("thinnest wall over radius with six digits of pressure", thinnest),
+            page.value("thinnest wall over radius with pressure correct to six digits", thinnest),
             page.value("lowest pressure on a seat [Pa]", least, at_least=0.0),
             page.value("change of clearance over change of interference", step, at_most=2.0),
         ],

@@ -158,25 +158,30 @@ def answer(page: Page, arrays: int, changed: int, reordered: Renumbered) -> None
     worst = np.max(reordered.direct, axis=0)
     figures = [
         page.value(f"arrays that differ in any bit, one thread, of {arrays}", changed, at_most=0.0),
-        page.judged(SLOPE, "exponent of L/D in the change by another order", "theory"),
-        page.value(f"change of a stiffness by another order, L/D = {at[0]:g}", worst[0]),
-        page.value("change of a stiffness by another order, L/D = 200", worst[at.index(200.0)]),
+        page.judged(SLOPE, "exponent of L/D in the change by renumbering", "theory"),
+        page.value(f"relative change of a stiffness by renumbering, L/D = {at[0]:g}", worst[0]),
+        page.value(
+            "relative change of a stiffness by renumbering, L/D = 200", worst[at.index(200.0)]
+        ),
     ]
     if high is not None:
-        name = "largest L/D at which another order keeps four digits"
+        name = "largest L/D with four digits the same after renumbering"
         figures.insert(1, page.value(name, high))
     page.answer(
-        "Does a run repeat bit for bit, and what does another order of operations change?",
+        "Does a run repeat bit for bit, and what does another numbering of the nodes change?",
         (
             f"Two runs with one thread agree in every bit of {arrays} arrays; "
             if changed == 0
             else f"Two runs with one thread differ in {changed} of {arrays} arrays; "
         )
-        + "another order of nodes keeps four digits up to L/D\u00a0=\u00a0"
-        + f"{formatted(at[-1] if high is None else high)}.",
+        + "after renumbering nodes a stiffness agrees to four digits up to "
+        + f"L/D\u00a0=\u00a0{formatted(at[-1] if high is None else high)}.",
         figures,
         hero=CHANGES,
-        cautions=["Bits repeat on the same machine with the same libraries; others may differ."],
+        cautions=[
+            "Bits repeat on the same machine with the same libraries; another machine may differ.",
+            "L/D is length over diameter of a tube, whose bending stiffness is compared.",
+        ],
     )
 
 

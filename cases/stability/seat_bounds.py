@@ -279,32 +279,37 @@ def answer(page: Page, found: Found, narrow: float | None) -> None:
     averaged, sliding = (over_rigid(found.swept, c) for c in ("averaged", "sliding"))
     apart, band = 100.0 * (1.0 - averaged[-1]), 1e3 * PLAIN_WIDTH
     page.answer(
-        "Do rigid and averaged coupling bracket the tilt stiffness of a bearing's seat?",
-        "Both bracket a bonded seat, "
+        "Is the tilt stiffness of a bearing seat between those of rigid and averaged couplings?",
+        "For a bonded seat, yes: the couplings "
         + (
-            f"within {100 * GAP:g}\u00a0% up to a {formatted(1e3 * narrow)}\u00a0mm band and "
+            f"differ by under {100 * GAP:g}\u00a0% up to a {formatted(1e3 * narrow)}\u00a0mm "
+            "wide band, "
             if narrow is not None
-            else f"never within {100 * GAP:g}\u00a0% and "
+            else f"always differ by over {100 * GAP:g}\u00a0%, "
         )
-        + f"{apart:.0f}\u00a0% apart on the whole bore; a frictionless one is "
-        + ("softer." if (sliding < averaged).all() else "not always softer."),
+        + f"and by {apart:.0f}\u00a0% on the whole bore.",
         [
             page.judged(
-                REMEDIED.format("rigid", 1e3 * found.sizes[-1]), f"rigid, {band:g} mm band"
+                REMEDIED.format("rigid", 1e3 * found.sizes[-1]), f"rigid coupling, {band:g} mm band"
             ),
             page.judged(
-                REMEDIED.format("averaged", 1e3 * found.sizes[-1]), f"averaged, {band:g} mm band"
+                REMEDIED.format("averaged", 1e3 * found.sizes[-1]),
+                f"averaged coupling, {band:g} mm band",
             ),
-            page.value("averaged below rigid, whole bore [%]", apart),
-            page.judged(STRIP_TILT, f"frictionless, {1e3 * STRIP:g} mm band", "smooth strip"),
-            page.value("frictionless over rigid, whole bore [%]", 100.0 * sliding[-1]),
+            page.value("averaged below rigid coupling, whole bore [%]", round(apart)),
+            page.judged(STRIP_TILT, f"frictionless seat, {1e3 * STRIP:g} mm band", "smooth strip"),
+            page.value(
+                "frictionless seat over rigid coupling, whole bore [%]", 100.0 * sliding[-1]
+            ),
         ],
         hero=WIDTHS_CHART,
         cautions=[
-            "The bracket holds on a converged mesh only: on coarse elements of second order even "
-            "the averaged coupling is too stiff.",
-            "The mean rotation of a frictionless seat may point against its moment: take moment "
-            "squared over twice the energy.",
+            "A frictionless seat is "
+            + ("softer" if (sliding < averaged).all() else "not always softer")
+            + " than both: take its stiffness as moment squared over twice the energy, since its "
+            "mean rotation may even point against the moment.",
+            "The mesh must be converged: on coarse second-order elements even the averaged "
+            "coupling is too stiff.",
         ],
     )
 

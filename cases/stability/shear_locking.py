@@ -23,6 +23,7 @@ from fe_drivetrain.cases.stability.bent_shafts import (
     shear_part,
 )
 from fe_drivetrain.cases.stability.locking_curves import CRITERION, WITHIN, error_chart, limit
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import last_within
 from fe_drivetrain.elasticity.operator import elasticity, incompatible, incompressible
 from fe_drivetrain.elasticity.solve import recovery_estimate
@@ -145,7 +146,7 @@ def answer(page: Page, most: int, tip: Excesses, slenderness: Sequence[int], lef
         *(
             page.value(
                 f"stiffness over the true one, {kind}, L/D = {longest:g}",
-                linear[name],
+                rounded([linear[name]], 3)[0],
                 beside=1.0,
                 by="exact",
             )
@@ -159,22 +160,25 @@ def answer(page: Page, most: int, tip: Excesses, slenderness: Sequence[int], lef
             )
             for name, kind in (("tetrahedra of 10 nodes", "10-node tetrahedra"),)
         ),
-        page.value("worst error at any L/D, elements of second order [%]", held, at_most=1.0),
-        page.value("error left by incompatible modes in a round shaft [%]", 100 * left),
+        page.value("worst error at any L/D, second-order elements [%]", held, at_most=1.0),
+        page.value(
+            "error of 8-node hexahedra with incompatible modes, round shaft [%]", 100 * left
+        ),
     ]
     if within is not None:
         name = f"largest L/D within 1 %, 8-node hexahedra, {ALONG} along"
         figures.insert(1, page.value(name, within))
     page.answer(
-        "Which elements may bend a slender bar or shaft?",
-        f"Linear hexahedra, {ALONG} along, make a bar of L/D\u00a0=\u00a0{longest:g} too "
-        f"stiff {formatted(linear['8 nodes'], 2)}-fold; elements of second order stay within "
-        f"{formatted(held, 2)}\u00a0% at every L/D.",
+        "Which elements may be used for the bending of a slender bar or shaft?",
+        f"{ALONG} linear 8-node hexahedra along a bar of L/D\u00a0=\u00a0{longest:g} make it "
+        f"{formatted(linear['8 nodes'], 3)} times too stiff; second-order elements are within "
+        f"{formatted(held)}\u00a0% at every L/D.",
         figures,
         hero=TIPS.format(most),
         cautions=[
-            "Incompatible modes hold in bricks only: in a round shaft they lock as well.",
-            "Scenes are meshed in curved tetrahedra of 10 nodes, which hold.",
+            "Incompatible modes help brick-shaped elements only: in a round shaft they are too "
+            "stiff as well.",
+            "Drivetrain files are meshed with curved 10-node tetrahedra, of second order.",
         ],
     )
 

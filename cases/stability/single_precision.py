@@ -277,36 +277,39 @@ def answer(page: Page, every: list[Trial], walls: list[Trial]) -> None:
     lost = [t for t in every if t.double >= 0 > t.single]
     both = [t for t in every if max(t.single, t.double) < 0]
     more = max(t.single - t.double for t in every if min(t.single, t.double) >= 0)
+    most = f"at most {more}" if more > 0 else "no"
     thinnest = safe_values(walls)[1]
     figures = [
-        page.value("iterations more than in double precision, worst", more),
-        page.judged(STEPS, "iterations over those in double precision, worst"),
+        page.value("iterations more than in double precision, at worst", more),
+        page.judged(STEPS, "ratio of iterations to those in double precision, at worst"),
         page.value(
-            f"solids lost by single precision alone, of {len(every)}", len(lost), at_most=0.0
+            f"solids that fail in single precision alone, of {len(every)}", len(lost), at_most=0.0
         ),
-        page.value(f"solids that neither precision solves, of {len(every)}", len(both)),
+        page.value(f"solids that fail in both precisions, of {len(every)}", len(both)),
     ]
     if thinnest is not None:
-        figures.append(page.value("largest radius over wall of a tube that converges", thinnest))
+        figures.append(page.value("largest radius over wall with which a tube converges", thinnest))
     if any(not np.isnan(t.error) for t in every):
         figures.append(
-            page.judged(STATED, "error of the program's answers there, over what it states")
+            page.judged(
+                STATED, "error of the program's results beyond, over the error that it states"
+            )
         )
     page.answer(
-        "May multigrid work in single precision?",
+        "May the multigrid preconditioner work in single precision?",
         (
-            f"Yes: on {len(every)} solids it takes at most {more} iterations more; "
+            f"Yes: on {len(every)} solids it costs {most} extra iterations; "
             if not lost
             else f"No: on {len(lost)} of {len(every)} solids it alone fails; "
         )
-        + f"on {len(both)}"
-        + (f", such as walls under 1/{thinnest:g} of the radius," if thinnest else "")
-        + " both precisions fail.",
+        + f"{len(both)}"
+        + (f", such as tubes with walls under 1/{thinnest:g} of the radius," if thinnest else "")
+        + " fail in both precisions.",
         figures,
         hero=caption_of_iterations(THIN_WALLS),
         cautions=[
-            "Only the preconditioner is single: the stiffness and the iteration stay in double "
-            "precision."
+            "Only the preconditioner is in single precision: the stiffness and the iteration stay "
+            "in double precision."
         ],
     )
 

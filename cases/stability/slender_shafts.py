@@ -113,26 +113,26 @@ def answer(page: Page, points: list[sweep.Point], patches: list[int], within: fl
     refused = min((p.value for p in points if not p.answers["auto"].method), default=None)
     last = points[-1].value
     ends = {
-        "largest L/D with four digits in bending, any solver": digits,
-        "largest L/D that multigrid solves": multigrid,
-        "L/D from which the program refuses": refused,
+        "largest L/D correct to four digits in bending, any solver": digits,
+        "largest L/D with which multigrid converges": multigrid,
+        "L/D from which the program rejects the shaft": refused,
     }
     page.answer(
         "How slender may a shaft of solid elements be?",
-        "No solver keeps four digits of a bent shaft in solid elements beyond L/D\u00a0=\u00a0"
-        f"{formatted(last if digits is None else digits)}; multigrid stops at "
-        f"{formatted(multigrid or 0.0)}, and the program "
-        + ("never refuses." if refused is None else f"refuses from {formatted(refused)}."),
+        "With solid elements a bent shaft is correct to four digits up to "
+        f"L/D\u00a0=\u00a0{formatted(last if digits is None else digits)}; multigrid converges up "
+        f"to {formatted(multigrid or 0.0)}; the program rejects "
+        + ("none." if refused is None else f"L/D from {formatted(refused)}."),
         [
             *(page.value(name, value) for name, value in ends.items() if value is not None),
-            page.judged(PATCHES, "most over least iterations of patches", "theorem"),
+            page.judged(PATCHES, "most over least iterations of the patch solver", "theorem"),
             page.judged(EXPONENT, "exponent of L/D in the condition number", "theory"),
-            page.value("worst error over the bound that is stated with it", within, at_most=1.0),
+            page.value("worst error over the error that the program states", within, at_most=1.0),
         ],
         hero=ERRORS,
         cautions=[
-            f"Shafts here are {ALONG} elements long; longer elements condition a shaft better, and "
-            "a beam has no such limit."
+            f"L/D is length over diameter. Shafts here have {ALONG} elements along their length; "
+            "longer elements lose fewer digits, and a beam has no such limit."
         ],
     )
 

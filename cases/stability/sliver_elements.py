@@ -5,6 +5,7 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import slivers
 from fe_drivetrain.common import Bools, Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.elasticity.mesh import FLATTEST, find_faults, flatness
 from fe_drivetrain.elasticity.solve import MAX_ITERATIONS
 from fe_drivetrain.report import crosses, marked
@@ -197,26 +198,28 @@ def answer(page: Page, rows: list[Record], inside_out: float) -> None:
     safe, steps = (safe_to(rows, failed) for failed in (is_wrong(rows), gives_up(rows)))
     digits, alone = (formatted(last if at is None else at, 1, "") for at in (safe, steps))
     ends = {
-        "least flatness with six digits of stiffness": safe,
-        "least flatness that multigrid solves without a fallback": steps,
+        "least flatness with stiffness correct to six digits": safe,
+        "least flatness with which multigrid converges": steps,
     }
     page.answer(
         "How flat may the elements of a mesh be?",
-        f"Six digits of stiffness are right down to a flatness of {digits}; multigrid needs a "
-        f"fallback below {alone}, and the program refuses meshes below "
-        f"{formatted(FLATTEST, 2, '')}.",
+        f"Stiffness is correct to six digits down to a flatness of {digits}; multigrid alone fails "
+        f"below {alone}; the program rejects meshes below {formatted(FLATTEST, 2, '')}.",
         [
-            *(page.value(name, at) for name, at in ends.items() if at is not None),
-            page.value("flatness below which the program refuses a mesh", FLATTEST),
+            *(page.value(name, rounded([at], 1)[0]) for name, at in ends.items() if at is not None),
+            page.value("flatness below which the program rejects a mesh", FLATTEST),
             page.value(
-                "worst error of bending, slivers inside out, unnoticed [%]", 100 * abs(inside_out)
+                "worst error of bending with elements inside out [%]", 100 * abs(inside_out)
             ),
-            page.judged(REMEDIED, "error of bending once slivers are taken out", "exact"),
+            page.judged(
+                REMEDIED, "relative error of bending once flat elements are removed", "exact"
+            ),
         ],
         hero=ERRORS,
         cautions=[
-            "Flatness is the least height of an element over its longest edge; elements inside out "
-            "give no sign of themselves, and are refused."
+            "Flatness is the least height of an element over its longest edge; where multigrid "
+            "fails, a direct solver takes over.",
+            "Elements that are inside out do not show in the solution: the program rejects them.",
         ],
     )
 

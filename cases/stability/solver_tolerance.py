@@ -8,6 +8,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references.solid_shafts import straight
 from fe_drivetrain.cases.stability import solver_steps
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import FOUR_DIGITS, decades, safe_range
 from fe_drivetrain.elasticity.solve import TOLERANCE
 from fe_drivetrain.report import marked, trace
@@ -65,22 +66,22 @@ def answer(page: Page, rows: list[Record], loosest: dict[str, float]) -> None:
     hardest = sorted(loosest, key=lambda name: loosest[name])
     page.answer(
         "How loose may the tolerance of an iterative solver be?",
-        "Four digits of every stiffness need a tolerance of the energy error of "
-        f"{formatted(enough, 2, '')}; the program stops at {formatted(TOLERANCE, 2, '')}, with "
-        f"errors up to {formatted(left, 2, '')}.",
+        f"A tolerance of {formatted(enough, 2, '')} on the energy error makes every stiffness "
+        f"correct to four digits; the program's {formatted(TOLERANCE, 2, '')} leaves errors up to "
+        f"{formatted(left, unit='')}.",
         [
             page.value(
-                "loosest tolerance for four digits, all stiffnesses",
+                "loosest tolerance for four correct digits, all stiffnesses",
                 enough,
                 at_least=TOLERANCE,
                 by="program",
             ),
             *(
-                page.value(f"loosest tolerance, {name}", loosest[name])
+                page.value(f"loosest tolerance, {name}", rounded([loosest[name]], 2)[0])
                 for name in (*hardest[1:3], hardest[-1])
             ),
             page.value(
-                "worst error at the program's tolerance",
+                "worst relative error at the program's tolerance",
                 left,
                 at_most=FOUR_DIGITS,
                 by="four digits",
@@ -88,8 +89,8 @@ def answer(page: Page, rows: list[Record], loosest: dict[str, float]) -> None:
         ],
         hero=caption_of_errors(rows[-1]["problem"]),
         cautions=[
-            "The tolerance is of the energy error: a residual of the same size says little about a "
-            "stiffness."
+            "The tolerance is on the error in the energy norm: a residual of the same size says "
+            "little about a stiffness."
         ],
     )
 

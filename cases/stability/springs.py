@@ -172,35 +172,44 @@ def answer(page: Page, errors: Errors, bonded_high: float | None) -> None:
     """State the springs with four digits; `bonded_high` is the stiffest on a bonded bearing."""
     found = errors.of
     low, high = errors.safe
-    stiff = min(STIFFEST, high or STIFFEST)
+    stiff = high or found.stiffness[-1]
     silent = found.answered & ~found.warned & ~(errors.worst < FOUR_DIGITS)
     missed = int(silent[found.stiffness <= STIFFEST].sum())
-    softest = "softest spring with four digits, spherical bearing [N/m]"
+    warned = found.stiffness[found.warned]
+    softest = "softest spring with four correct digits, spherical bearing [N/m]"
     figures = [] if low is None else [page.value(softest, low)]
     figures += [
         page.value(
-            f"stiffest spring with four digits, {name} bearing [N/m]", end, at_least=STIFFEST
+            f"stiffest spring with four correct digits, {name} bearing [N/m]",
+            end,
+            at_least=STIFFEST,
         )
         for name, end in (("spherical", high), ("bonded", bonded_high))
         if end is not None
     ]
     page.answer(
         "How soft or stiff may the springs of a gearbox be?",
-        f"Gearbox springs from {newtons(low or found.stiffness[0])} to {newtons(stiff)}, "
-        + ("the stiffest that" if stiff == STIFFEST else "less than")
-        + " a scene may have, keep four digits; softer ones are "
-        + ("warned of or refused." if missed == 0 else f"wrong without a sign in {missed} cases."),
+        "Results are correct to four digits for gearbox springs from "
+        f"{newtons(low or found.stiffness[0])} to {newtons(stiff)}, "
+        + ("more" if stiff > STIFFEST else "not more")
+        + f" than the {newtons(STIFFEST)} that drivetrain files may have.",
         [
             *figures,
             page.value(
-                "softest spring that is answered [N/m]", found.stiffness[found.answered].min()
+                "softest spring that the program accepts [N/m]",
+                found.stiffness[found.answered].min(),
             ),
-            page.value("answers without four digits and without a warning", missed, at_most=0.0),
+            page.value(
+                "results without four correct digits and without a warning", missed, at_most=0.0
+            ),
         ],
         hero=ERRORS,
         cautions=[
-            "The bound of soft springs is that of this shaft: a motion that nothing else holds "
-            "loses digits as its spring gets softer."
+            "Softer springs are "
+            + ("rejected or warned of" if missed == 0 else f"not warned of in {missed} cases")
+            + (f"; the warning begins at {newtons(warned.max())}." if warned.size else "."),
+            "The soft limit is that of this shaft: a motion that nothing else restrains loses "
+            "digits as its spring gets softer.",
         ],
     )
 

@@ -45,33 +45,37 @@ def answer(page: Page) -> None:
     by_rows, by_matrix = page.limits[:2]
     low = formatted(by_rows.low or 1.0, 3, "")
     reach = (
-        f"{low} times and more,"
+        f"at least {low} times"
         if by_rows.high is None
-        else f"{low} to {formatted(by_rows.high, 3, '')} times,"
+        else f"{low} to {formatted(by_rows.high, 3, '')} times"
     )
-    ends = {"least stiffening": by_rows.low, "largest stiffening, eigenvalues": by_matrix.high}
+    ends = {"least stiffening": by_rows.low, "largest stiffening, by eigenvalues": by_matrix.high}
     page.answer(
-        "Do stiff bearings in six degrees of freedom bring back the torsional model?",
-        f"Stiffened {reach} bearings bring the torsional frequencies back within "
-        f"{formatted(WITHIN, 2, '')}; eigenvalues of the matrix "
+        "Do stiff bearings make a model in six degrees of freedom a torsional one?",
+        f"Bearings stiffened {reach} give the torsional frequencies within "
+        f"{formatted(100 * WITHIN, 2, '%')}\u00a0% by singular values; eigenvalues of the matrix "
         + (
-            "keep them, too."
+            "give them, too."
             if by_matrix.high is None
-            else f"lose them again beyond {formatted(by_matrix.high, 3, '')} times."
+            else f"lose them beyond {formatted(by_matrix.high, 3, '')} times."
         ),
         [
             *(
-                page.value(f"{what}, over the tabled stiffness", end)
+                page.value(f"{what}, over the published stiffness", end)
                 for what, end in ends.items()
                 if end is not None
             ),
-            page.judged(LEAST.format(name), "least error of all torsional frequencies", "program"),
+            page.judged(
+                LEAST.format(name),
+                "largest error of a torsional frequency, best stiffening",
+                "program",
+            ),
             page.judged(SLOPE.format(name), "exponent of the stiffness in the error", "theory"),
         ],
         hero=caption_of_errors(name),
         cautions=[
-            "Hold or leave out degrees of freedom instead of stiffening them: beyond the range "
-            "frequencies are round-off."
+            "Rather fix or leave out degrees of freedom than stiffen bearings: beyond the limit "
+            "frequencies are nothing but round-off."
         ],
     )
 

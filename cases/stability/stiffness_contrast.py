@@ -310,26 +310,28 @@ def answer(
         return rounded([min(known)], 2)[0] if known else math.inf
 
     page.answer(
-        "How different may the moduli of bodies that share a load be?",
-        "A direct solver keeps four digits up to a ratio of moduli of "
+        "How different may Young's moduli of bodies that share a load be?",
+        "A direct solver is correct to four digits up to a ratio of moduli of "
         f"{formatted(least(direct), 2, '')}, multigrid up to {formatted(least(iterated), 2, '')}; "
-        f"scenes may have {formatted(allowed, 2, '')}.",
+        f"drivetrain files allow {formatted(allowed, 2, '')}.",
         [
             *(
-                page.value(f"largest ratio, direct, {name}", end, at_least=allowed, by="scenes")
+                page.value(
+                    f"largest ratio, direct, {name}", end, at_least=allowed, by="drivetrain files"
+                )
                 for name, end in direct.items()
                 if end is not None
             ),
-            page.value("largest ratio, multigrid, worst", least(iterated)),
+            page.value("largest ratio, multigrid, all arrangements", least(iterated)),
             page.value(
-                "worst error, the better of elastic and rigid stiff bodies",
+                "worst error if very stiff bodies are made rigid",
                 float(np.nanmax(of_chain.better)),
                 at_most=FOUR_DIGITS,
             ),
         ],
         hero=CHAINS,
         cautions=[
-            "Multigrid says where it has not converged, and a direct factor answers in its place."
+            "Where multigrid does not converge, the program says so and a direct solver takes over."
         ],
     )
 

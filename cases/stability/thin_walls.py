@@ -142,20 +142,30 @@ def answer(page: Page, points: list[sweep.Point], patches: list[int], patch_erro
     wrong = max(p.iterations_error("multigrid") for p in points)
     within = patch_error <= FOUR_DIGITS
     page.answer(
-        "How thin may the wall of a tube be for each solver?",
-        f"Multigrid converges down to a wall of 1/{formatted(safe or 0.0)} of the radius only; "
-        f"patches take {min(patches)} to {max(patches)} iterations down to 1/{thinnest:g}, "
-        + ("right to" if within else "but wrong by")
-        + f" {formatted(patch_error, 2, '')}.",
+        "How thin may the wall of a tube be for the iterative solvers?",
+        f"Multigrid converges only for walls of at least 1/{formatted(safe or 0.0)} of the radius; "
+        f"the patch solver down to 1/{thinnest:g} in {min(patches)} to {max(patches)} iterations"
+        + ("." if within else ", not accurately."),
         [
-            *([] if safe is None else [page.value("largest radius over wall, multigrid", safe)]),
-            page.judged(PATCHES, "most over least iterations of patches", "theorem"),
-            page.value("worst error of patches", patch_error, at_most=FOUR_DIGITS),
-            page.value("worst error of multigrid, not converged [%]", 100 * wrong),
+            *(
+                []
+                if safe is None
+                else [page.value("largest radius over wall with which multigrid converges", safe)]
+            ),
+            page.judged(PATCHES, "most over least iterations of the patch solver", "theorem"),
+            page.value(
+                "worst relative error of the patch solver",
+                patch_error,
+                at_most=FOUR_DIGITS,
+            ),
+            page.value("worst error of multigrid where it does not converge [%]", 100 * wrong),
             page.judged(EXPONENT, "exponent of radius over wall in the condition number", "theory"),
         ],
         hero=sweep.ITERATIONS_CHART,
-        cautions=["Direct solvers hold at every wall, as long as their factor fits in memory."],
+        cautions=[
+            "The patch solver's preconditioner solves overlapping blocks of the body (patches).",
+            "Direct solvers work for every wall, as long as their factor fits in memory.",
+        ],
     )
 
 

@@ -229,28 +229,32 @@ def answer(page: Page, meshes: list[housing.Tilted], high: dict[str, float], thr
     page.answer(
         "Do the thesis's four nodes of the housing give the tilt stiffness K_R of its bearing?",
         (
-            f"The thesis's four nodes do not give the seat's K_R: theirs is {both} above it, on "
-            "every mesh."
+            f"The thesis's four nodes do not give the seat's tilt stiffness K_R: their value is "
+            f"{both} too high on every mesh."
             if misleads
-            else f"The thesis's four nodes give the seat's K_R within {both}."
+            else f"The thesis's four nodes give the seat's tilt stiffness K_R within {both}."
         ),
         [
-            *(page.value(f"four nodes above the seat, {p} [%]", above[p]) for p in NAMES),
+            *(
+                page.value(f"K_R by four nodes above the seat's, {p} [%]", round(above[p]))
+                for p in NAMES
+            ),
             *(
                 page.judged(SEAT_AGAINST_SHAFT.format(p), f"K_R of the seat, {p}", "shaft behind")
                 for p in NAMES
             ),
             page.value(
-                f"largest radius of nodes within {100 * MISLEADS:g} % [m]", min(high.values())
+                f"largest radius at which four nodes are within {100 * MISLEADS:g} % [m]",
+                min(high.values()),
             ),
             page.value(
-                f"hub thrust over moment that moves a secant by {100 * MISLEADS:g} % [1/m]", thrust
+                f"hub thrust over moment that changes K_R by {100 * MISLEADS:g} % [1/m]", thrust
             ),
         ],
         hero=RADII_CHART,
         cautions=[
-            "Take K_R from the averaged seat under a unit moment: a thrust beside it leans the "
-            "housing.",
+            "Take K_R from the mean rotation of the seat under a moment alone: a thrust as well "
+            "would tilt the housing and change K_R.",
         ],
         claim="does not hold" if misleads else "holds",
     )

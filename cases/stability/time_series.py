@@ -8,6 +8,7 @@ from scipy.special import erf
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import FORCES, Floats, InputError, scratch_folder
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import fitted_exponent, statistics
 from fe_drivetrain.report import marked, trace
 from fe_drivetrain.report.number_text import formatted
@@ -299,35 +300,37 @@ def answer(page: Page, found: Crossing, spoilt: Outlier) -> None:
     least, worst = found.means[-1], 100 * float(np.abs(found.relative_excess - 1).max())
     figures = [
         page.value(
-            f"mean percentage error over the expected one, mean of {least:g} standard deviations",
+            f"mean percentage error over its expected value, mean of {least:g} deviations",
             found.excess[-1],
             beside=1.0,
             by="theory",
         ),
-        page.value("relative error: worst difference from the expected one [%]", worst),
+        page.value("worst difference of the relative error from its expected value [%]", worst),
         page.value(
             "largest change of the median error by one outlier [%]", 100 * spoilt.median_excess
         ),
     ]
     ends = {
-        "least mean over standard deviation, mean percentage error": found.safe,
-        "largest outlier over standard deviation, root mean square error": spoilt.safe,
+        "least mean over standard deviation for the mean percentage error": found.safe,
+        "largest outlier over standard deviation for the RMS error": spoilt.safe,
     }
-    figures[:0] = [page.value(name, end) for name, end in ends.items() if end is not None]
+    figures[:0] = [
+        page.value(name, rounded([end], 2)[0]) for name, end in ends.items() if end is not None
+    ]
     page.answer(
         "Which error measures may be trusted for loads that pass zero?",
-        "The thesis's mean percentage error may be trusted "
+        "The thesis's mean percentage error can be trusted "
         + (
             f"only where the mean load exceeds {formatted(found.safe, 2)} standard deviations"
             if found.safe is not None
             else f"down to a mean load of {least:g} standard deviations"
         )
-        + "; the relative error holds everywhere.",
+        + "; the relative error can be trusted everywhere.",
         figures,
         hero=PERCENTAGES,
         cautions=[
-            "The bound is that of normal samples and an error of constant size; about a mean of "
-            "zero the percentage depends on what is left out near zero."
+            "The limit is for normally distributed loads and an error of constant size; for a mean "
+            "near zero the percentage depends on which samples near zero are left out."
         ],
     )
 

@@ -182,25 +182,26 @@ def answer(page: Page, errors: dict[str, Floats], longest: Record, each: float) 
     safe, merged = first_beyond(RATIOS, errors[NAIVE], SAFE), float(errors[MERGED].max())
     seconds, memory, samples = longest["time [s]"], longest["memory [MiB]"], longest["samples"]
     figures = [
-        page.value("memory beside the program's own, in chunks [MiB]", memory),
+        page.value("memory beyond the program's own, in chunks [MiB]", round(memory)),
         page.value("time, in chunks [s]", seconds),
-        page.value("samples that fit whole into 2 GiB", ALLOWED / each),
-        page.value("worst error of the variance, merged chunks", merged, at_most=SAFE),
+        page.value("samples that fit into 2 GiB at once", ALLOWED / each),
+        page.value("worst relative error of the variance, merged chunks", merged, at_most=SAFE),
     ]
     if safe is not None:
-        name = "largest mean over deviation, variance from sums of squares"
-        figures.append(page.value(name, safe))
+        name = "largest mean over standard deviation, by sums of squares"
+        figures.append(page.value(name, rounded([safe], 2)[0]))
     page.answer(
         "How long may a load history be, and how far from zero?",
-        f"In chunks {formatted(samples)} samples take {memory:.0f}\u00a0MiB; sums of squares lose "
-        "four digits beyond a mean of "
-        f"{formatted(rounded([safe or RATIOS[-1]], 2)[0], unit='')} deviations, chunks "
-        + ("never." if merged <= SAFE else "as well."),
+        f"In chunks, {formatted(samples)} samples take {memory:.0f}\u00a0MiB and the variance is "
+        + ("always" if merged <= SAFE else "not always")
+        + " correct to four digits; sums of squares only up to means of "
+        f"{formatted(rounded([safe or RATIOS[-1]], 2)[0], unit='')} deviations.",
         figures,
         hero=MEMORY,
         cautions=[
-            "Times and memory are of this machine; a history that is compared whole takes "
-            f"{each:.0f}\u00a0bytes a sample."
+            "Deviations are standard deviations of the load.",
+            "Times and memory are of this machine; a history that is read at once takes "
+            f"{each:.0f}\u00a0bytes per sample.",
         ],
     )
 

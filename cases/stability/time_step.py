@@ -63,20 +63,25 @@ def answer(page: Page, enough: float) -> None:
     """State how many steps a mesh period needs, and where linear acceleration is unstable."""
     stable = all(one.passed for one in page.checks if "largest growth" in one.quantity)
     page.answer(
-        "How short must the time steps of a drivetrain with a varying mesh be?",
-        f"A varying mesh needs {enough:.0f} steps in its period for {100 * ENOUGH:g}\u00a0% of its "
-        f"force's swing; linear acceleration blows up beyond {formatted(CRITICAL, 3)} periods, "
-        + ("the default never." if stable else "the default as well."),
+        "How short must time steps be for a drivetrain with a varying gear mesh stiffness?",
+        f"{enough:.0f} time steps per mesh period give the mesh force within "
+        f"{100 * ENOUGH:g}\u00a0% of its peak-to-peak variation; the default method "
+        + ("is stable" if stable else "is not stable")
+        + " for every step tried.",
         [
-            page.value(f"least steps in a mesh period for {100 * ENOUGH:g} %", enough),
-            page.judged(SLOPE, "exponent of the steps in the error", "second order"),
-            page.judged(STABLE, "longest stable step over the period", "Bathe"),
-            page.judged(GROWN, "growth in the longest step, linear acceleration"),
+            page.value(f"least time steps per mesh period for {100 * ENOUGH:g} %", enough),
+            page.judged(SLOPE, "exponent of the number of steps in the error", "second order"),
+            page.judged(
+                STABLE, "linear acceleration: longest stable step over the shortest period", "Bathe"
+            ),
+            page.judged(GROWN, "linear acceleration: growth per step in the longest step tried"),
         ],
         hero=ERRORS,
         cautions=[
-            "One harmonic of the mesh's stiffness; the period that limits linear acceleration is "
-            "the shortest of the whole drivetrain."
+            "This is for one harmonic of the mesh stiffness; each further one needs as many steps "
+            "in its own period.",
+            "The linear acceleration method is unstable from steps of "
+            f"{formatted(CRITICAL, 3)} times the shortest natural period of the drivetrain on.",
         ],
     )
 

@@ -7,6 +7,7 @@ from scipy.integrate import solve_ivp
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import InTime, converge_in_time, peak_between
 from fe_drivetrain.dynamics import (
     Equations,
@@ -99,27 +100,35 @@ def answer(page: Page, found: Sweeps, at: tuple[float, float, float, float]) -> 
     up, down, linear = found.up, found.down, found.linear
     parting = float(max(up[:, 1].max(), down[:, 1].max()))
     page.answer(
-        "Where do the teeth of a mesh part, and what does a model without backlash miss?",
-        f"Teeth part from {low:.2f} ({past:.2f} coming down) to {high:.2f} of the natural "
-        f"frequency; without backlash a mesh peaks at {linear[:, 1].max():.2f} mean forces, not "
-        f"{parting:.2f}.",
+        "At which speeds do gear teeth separate, and what does a model without backlash miss?",
+        f"Teeth separate from {low:.2f} (slowing down: {past:.2f}) to {high:.2f} times the natural "
+        f"frequency; a model without backlash peaks at {linear[:, 1].max():.2f} instead of "
+        f"{parting:.2f} mean forces.",
         [
-            page.value("mesh over natural frequency from which teeth part", low),
-            page.value("the same, coming from higher frequencies", past),
-            page.value("mesh over natural frequency from which teeth stay in contact", safe),
-            page.value("peak force over the mean, with backlash", parting),
             page.value(
-                "peak force over the mean, spring that pulls",
-                linear[:, 1].max(),
-                beside=parting,
+                "mesh frequency over the natural one from which teeth separate, running up", low
+            ),
+            page.value(
+                "mesh frequency over the natural one down to which they separate, slowing down",
+                past,
+            ),
+            page.value(
+                "mesh frequency over the natural one from which teeth stay in contact again", safe
+            ),
+            page.value("peak force over the mean, with backlash", rounded([parting], 3)[0]),
+            page.value(
+                "peak force over the mean, without backlash",
+                rounded([linear[:, 1].max()], 3)[0],
+                beside=rounded([parting], 3)[0],
                 by="backlash",
             ),
-            page.value("largest pull over the mean force, spring that pulls", -linear[:, 0].min()),
+            page.value(
+                "largest tension over the mean force, without backlash", -linear[:, 0].min()
+            ),
         ],
         hero=LARGEST,
         cautions=[
-            "Between contact and parting the motion depends on where it comes from: start from "
-            "both sides."
+            "Near these frequencies two motions are possible: compute a run-up and a run-down.",
         ],
     )
 

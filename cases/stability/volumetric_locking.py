@@ -31,6 +31,7 @@ from fe_drivetrain.cases.stability.locking_curves import (
     shaded,
 )
 from fe_drivetrain.common import InputError
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.comparison import band_of, last_within
 from fe_drivetrain.drivetrain_file import MAX_POISSON_RATIO
 from fe_drivetrain.elasticity.operator import incompatible, incompressible
@@ -92,35 +93,39 @@ def answer(page: Page, of_disc: DiscSweep, best: float) -> None:
     worst = nus[int(np.abs(errors[AVERAGED]).argmax())]
     figures = [
         page.value(
-            f"error of the disc, 10-node tetrahedra, nu = {nus[-1]:g} [%]",
-            100 * errors[DEFAULT][-1],
+            f"disc too stiff by, plain 10-node tetrahedra, ratio {nus[-1]:g} [%]",
+            rounded([100 * errors[DEFAULT][-1]], 2)[0],
         ),
         page.value(
-            f"error of the disc, 4-node tetrahedra, nu = {nus[-1]:g} [%]",
-            100 * errors["4 nodes"][-1],
+            f"disc too stiff by, plain 4-node tetrahedra, ratio {nus[-1]:g} [%]",
+            rounded([100 * errors["4 nodes"][-1]], 2)[0],
         ),
-        page.judged(REMEDIED.format(worst), "worst stiffness of the disc, averaged, over exact"),
+        page.judged(
+            REMEDIED.format(worst), "worst stiffness of the disc over the exact one, averaged"
+        ),
         page.value(
-            "worst error of a cylinder, averaged, 8 nodes and more [%]",
+            "worst error of a cylinder, averaged, elements of 8 nodes and more [%]",
             100 * best,
             at_most=100 * CRITERION,
         ),
-        page.value("largest Poisson's ratio of a material", MAX_POISSON_RATIO),
+        page.value("largest Poisson's ratio that the program accepts", MAX_POISSON_RATIO),
     ]
     if plain_nu is not None:
-        name = "Poisson's ratio up to which 10-node tetrahedra hold 1 %, disc"
+        name = "largest ratio tried with plain 10-node tetrahedra within 1 %, disc"
         figures.insert(0, page.value(name, plain_nu))
     page.answer(
-        "How near to 1/2 may Poisson's ratio be?",
-        f"At {nus[-1]:g} plain 10-node tetrahedra make a bonded disc "
-        f"{formatted(100 * errors[DEFAULT][-1], 2)}\u00a0% too stiff; with averaged dilatation it "
-        f"is within {formatted(100 * largest(errors[AVERAGED]), 2)}\u00a0% at every ratio.",
+        "How near to 1/2 may Poisson's ratio be in a finite-element model?",
+        f"Up to {nus[-1]:g} with averaged dilatation: a bonded disc's stiffness is then within "
+        f"{formatted(100 * largest(errors[AVERAGED]), 2)}\u00a0%; plain 10-node tetrahedra make it "
+        f"{formatted(100 * errors[DEFAULT][-1], 2)}\u00a0% too stiff.",
         figures,
         hero=DISC_ERRORS,
         cautions=[
-            f"Scenes average from {incompressible.AVERAGED_FROM:g} on; averaged elements need four "
-            "across a bent shaft.",
-            "Multigrid stalls near 1/2 with averaging, too: a direct solver steps in.",
+            "The program averages the dilatation by itself from a ratio of "
+            f"{incompressible.AVERAGED_FROM:g} on; a bent shaft then needs four elements across.",
+            f"The disc was tried at ratios of {', '.join(f'{nu:g}' for nu in nus)} only.",
+            "Near 1/2 multigrid does not converge, with averaging neither: a direct solver takes "
+            "over.",
         ],
     )
 

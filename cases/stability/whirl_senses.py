@@ -6,6 +6,7 @@ import numpy as np
 
 from fe_drivetrain.cases import case
 from fe_drivetrain.common import Floats
+from fe_drivetrain.common.arrays import rounded
 from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.dynamics.whirl import (
     Disc,
@@ -212,21 +213,26 @@ def answer(page: Page, found: Swept, bound: float, slowest: float) -> None:
     """State where senses and stability are lost."""
     equal = float(np.interp(1.0, found.uneven, found.senses))
     page.answer(
-        "Where does sorting of forward and backward whirl fail?",
-        f"Whirl has a sense until supports differ by {formatted(bound, 2)} times the gyroscopic "
-        "split; of equal supports down to the slowest speeds.",
+        "When can forward and backward whirl not be told apart?",
+        "Forward and backward whirl can be told apart until the supports' stiffnesses differ by "
+        f"{formatted(bound, 2)} times the frequency split from gyroscopic effects.",
         [
-            page.value("largest unevenness over the gyroscopic split", bound),
-            page.value("slowest speed over the frequency, equal supports", slowest),
-            page.value("sense where difference and split are equal", equal),
+            page.value("difference of stiffness over the gyroscopic split", rounded([bound], 2)[0]),
+            page.value("slowest speed over the natural frequency, equal supports", slowest),
+            page.value("sense of whirl (1: forward) where difference and split are equal", equal),
             page.value(
-                "whirl grows from, outer as inner damping, over the frequency",
+                "speed from which whirl grows, equal dampings, over the frequency",
                 float(np.interp(1.0, found.shares, found.limits)),
                 beside=2.0,
                 by="closed form",
             ),
         ],
         hero=SENSES,
+        cautions=[
+            "On equal supports whirl has a sense down to the slowest speeds.",
+            "The difference is that of each plane's stiffness from the mean, relative; the split "
+            "is that of the two whirl frequencies on equal supports, over the natural frequency.",
+        ],
     )
 
 
