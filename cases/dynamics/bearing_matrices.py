@@ -283,33 +283,42 @@ def answer(page: Page, found: Found, level: str, own: bool) -> None:
     met = (worst > MATTERS) + (planet > MATTERS)
     claims: tuple[Claim, ...] = ("does not hold", "holds in part", "holds")
     claim = claims[met]
-    ends = f"the thesis's argument {claim}"
+    ends = f"the thesis's advice to include it {claim}"
     if own:
-        ends = f"couplings {('do not matter', 'matter for some bearings', 'matter')[met]}"
+        ends = f"it {('does not matter', 'matters for some bearings', 'matters')[met]}"
     mesh = next(iter(found.turns[CALM, MATRIX].slices))
     face = {m: found.turns[CALM, m].face_load(mesh) for m in (*LINEAR, ROLLERS)}
     page.answer(
-        "What does the diagonal of a gearbox bearing's stiffness lose?",
-        f"The diagonal errs by up to {percent(worst)} in bearing loads on rollers, six by six "
-        f"{percent(matrix)}; at planets {percent(planet)}: {ends}.",
+        "How wrong are bearing loads without the off-diagonal terms of bearing stiffness?",
+        f"Without off-diagonal stiffness, gearbox-bearing loads err by up to {percent(worst)}, "
+        f"those of planet bearings by {percent(planet)}: {ends}.",
         [
-            page.value("error of loads by the diagonal [%]", 100 * worst),
-            page.value("error of loads by six by six [%]", 100 * matrix, at_most=100 * MATTERS),
-            page.value("error of planets' bearings by the diagonal [%]", 100 * planet),
+            page.value("error of bearing loads, diagonal stiffness alone [%]", 100 * worst),
             page.value(
-                f"K_Hbeta of {mesh} on rollers", face[ROLLERS], beside=face[MATRIX], by="six by six"
+                "error of bearing loads, full 6 × 6 matrix [%]",
+                100 * matrix,
+                at_most=100 * MATTERS,
             ),
-            page.value(f"the same by {FILE}", face[FILE], beside=face[DIAGONAL], by="diagonal"),
+            page.value("error of planet-bearing loads, diagonal alone [%]", 100 * planet),
             page.value(
-                "largest change of a frequency by couplings [%]", 100 * max(shifts(found, DIAGONAL))
+                f"face load factor K_Hbeta of {mesh}, bearings on rollers",
+                face[ROLLERS],
+                beside=face[MATRIX],
+                by="6 × 6 matrix",
+            ),
+            page.value(f"the same, {FILE}", face[FILE], beside=face[DIAGONAL], by="diagonal alone"),
+            page.value(
+                "largest change of a natural frequency by off-diagonal terms [%]",
+                100 * max(shifts(found, DIAGONAL)),
             ),
         ],
         HERO,
         [
-            "The file's rollers are assumed: they fill the outlines of public bearings."
+            "Rollers are assumed: they fill the published outlines of the bearings."
             if not own
-            else "Rollers are those of the catalogue entries that the file names.",
-            f"Statics at level {level}, rings rigid; stiffness at rated torque and one azimuth.",
+            else "Rollers are those of the catalogue entries that the drivetrain file names.",
+            f"Static model of level '{level}' with rigid bearing rings; stiffness is that at rated "
+            "torque and one azimuth of the carrier.",
         ],
         claim="" if own else claim,
     )

@@ -175,12 +175,12 @@ def answer(
     planetary = [row for row in rows if row["kind"] == "planetary" and row["Table 4.8"]]
     most = "ABCD"[int(np.argmax(counts["right"]))]
     page.answer(
-        "Are the printed mesh orders right, and where do they cross natural frequencies?",
-        f"The thesis's mesh orders of planetary stages {'hold' if holds else 'do not hold'}: they "
-        f"are {min(over):.0f} to {max(over):.0f}\u00a0% too high; right ones give {right} "
-        f"crossings, printed ones {printed}.",
+        "Are the thesis's mesh orders right, and how often do they cross natural frequencies?",
+        f"Printed mesh orders of planetary stages {'hold' if holds else 'do not hold'}: they "
+        f"are {min(over):.0f} to {max(over):.0f}\u00a0% too high; correct ones cross natural "
+        f"frequencies {right} times, not {printed}.",
         [
-            page.value("largest excess of a printed order [%]", max(over)),
+            page.value("largest excess of a printed mesh order [%]", max(over)),
             *(
                 page.value(
                     f"mesh order of drivetrain {row['drivetrain']}, {row['stage']}",
@@ -192,16 +192,19 @@ def answer(
                 for row in planetary[:5:2]
             ),
             page.value(
-                "crossings of three harmonics, A to D", right, beside=printed, by="printed orders"
+                "crossings with natural frequencies, three harmonics, drivetrains A to D",
+                right,
+                beside=printed,
+                by="printed orders",
             ),
-            page.value("planetary stages that cannot be put together", refused),
+            page.value("planetary stages that cannot be assembled with equal angles", refused),
         ],
         CAMPBELL.format(most),
         [
-            "Table 4.8 counts the teeth of ring and sun together, where the ring's alone pass the "
-            "planets.",
-            f"{refused} planetary stages of A, B and C cannot be put together with three planets "
-            "at equal angles.",
+            "Table 4.8 of the thesis adds the sun's teeth to the ring's; the mesh order is that of "
+            "the ring's teeth alone.",
+            f"{refused} planetary stages of A, B and C cannot be assembled with three planets at "
+            "equal angles.",
         ],
         claim="holds" if holds else "does not hold",
     )

@@ -160,43 +160,48 @@ def answer(page: Page, of: Turning, moving: Turn, still: Turn, ring: bool = Fals
     """State how the load of a bearing swings in a turn, and what the ring feels."""
     loads, rest = moving.resultant(of.pin), still.resultant(of.pin)
     swing, at_rest = (100.0 * float(np.ptp(one) / one.mean()) for one in (loads, rest))
-    largest = float(loads.max()) / 1e3
     bearing = a_bearing(of)
-    verdict = (
-        f"The load of {bearing} swings by {swing:.1f}\u00a0% in a turn, up to "
-        f"{value_text(largest, 'kN')}; statics at each azimuth gives {at_rest:.1f}\u00a0%."
+    apart = page.judged(
+        f"load of {bearing} in time from that of statics, largest over the mean",
+        "largest difference from statics, over the mean load",
+        "equilibria",
+        unit="%",
     )
+    agrees = "agrees within" if apart.status == "good" else "differs by up to"
     lines = []
+    cautions = []
     if ring:
-        lines = [
-            page.judged(THIRD, "ring: mesh line over the lines beside it", "symmetry: 0", unit="%")
+        name = f"elastic ring: vibration at the mesh order {RING} over that at {RING - 3}"
+        lines = [page.judged(THIRD, f"{name} and {RING + 3}", "symmetry: 0", unit="%")]
+        felt = "hardly" if lines[0].status == "good" else "also"
+        cautions = [
+            f"An elastic ring vibrates {RING - 3} and {RING + 3} times in a turn of the carrier, "
+            f"and {felt} at the {RING} mesh periods of a turn."
         ]
-        felt = "hardly feels" if lines[0].status == "good" else "feels"
-        verdict = (
-            f"{bearing[0].upper()}{bearing[1:]}'s load swings by {swing:.1f}\u00a0% in a turn; "
-            f"the ring {felt} the mesh frequency, but lines {RING - 3} and {RING + 3} times a turn."
-        )
     page.answer(
-        "How does the load of a planet bearing swing as the carrier turns?",
-        verdict,
+        "How does the load of a planet bearing vary as the carrier turns?",
+        f"{bearing[0].upper()}{bearing[1:]}'s load varies by {value_text(swing, '%')} of its mean "
+        f"(peak to peak) in a carrier turn; statics at each azimuth {agrees} "
+        f"{value_text(apart.value, '%')}.",
         [
-            page.value("swing of the load in a turn [%]", swing, beside=at_rest, by="statics"),
+            page.value(
+                "variation of the load in a turn, peak to peak over mean [%]",
+                swing,
+                beside=at_rest,
+                by="statics",
+            ),
             page.value("mean load of the bearing [kN]", float(loads.mean()) / 1e3),
             page.value(
                 "largest load of the bearing [kN]",
-                largest,
+                float(loads.max()) / 1e3,
                 beside=float(rest.max()) / 1e3,
                 by="statics",
             ),
-            page.judged(
-                f"load of {a_bearing(of)} in time from that of statics, largest over the mean",
-                "largest difference from statics, over the mean",
-                "equilibria",
-                unit="%",
-            ),
+            apart,
             *lines,
         ],
         TURNING,
+        cautions,
     )
 
 

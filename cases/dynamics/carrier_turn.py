@@ -82,26 +82,32 @@ def answer(page: Page, rows: list[Record], ratios: list[float], uneven: float) -
     reached = max(ratios) >= low
     page.answer(
         "How do the upwind and downwind bearings of a planet share its load over a turn?",
-        f"Upwind over downwind is {ratios[0]:.3f} with a rigid carrier, {ratios[2]:.3f} with one "
-        f"of beams: the thesis's {low:g} to {high:g} {'is' if reached else 'is not'} reached.",
+        "Averaged over a turn, a planet's upwind bearing carries at most "
+        f"{value_text(max(ratios))} times its downwind one's load: the thesis's {low:g} to "
+        f"{high:g} {'is' if reached else 'is not'} reached.",
         [
             page.value(
-                "upwind over downwind, rigid carrier", ratios[0], beside=low, by="thesis, least"
+                "upwind over downwind load, rigid carrier",
+                ratios[0],
+                beside=low,
+                by="thesis, least",
             ),
             page.value(
-                "upwind over downwind, carrier of beams (5 MW)",
+                "upwind over downwind load, elastic carrier of beams (5 MW)",
                 ratios[2],
                 beside=low,
                 by="thesis, least",
             ),
             page.value("largest upwind load, torque and gravity [kN]", rows[0]["largest [kN]"]),
-            page.value("largest upwind load, with tilt [kN]", rows[2]["largest [kN]"]),
-            page.value("variation by torque alone, over the mean [%]", 100 * uneven),
+            page.value(
+                "largest upwind load, with a tilt moment, too [kN]", rows[2]["largest [kN]"]
+            ),
+            page.value("variation in a turn by torque alone, over the mean [%]", 100 * uneven),
             page.judged("sum of the tangential loads of the planets' bearings", by="statics"),
         ],
         RATIOS,
         [
-            "What would give the thesis's ratios is tested cause by cause in "
+            "Possible causes of the thesis's ratios are tested one by one in the case "
             "dynamics/upwind_bearing."
         ],
         claim="holds" if reached else "does not hold",

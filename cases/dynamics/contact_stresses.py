@@ -109,14 +109,14 @@ def answer(page: Page, pressures: dict[str, float]) -> None:
     high = pressures["stage 3"]
     ours = {key: high / pressures[key] for key in PRINTED}
     astray = [key for key, one in ours.items() if abs(one / PRINTED[key] - 1) > NEAR]
-    names = {"ring-planet": "the ring's mesh", "sun-planet": "the sun's mesh"}
-    names["stage 2"] = "the intermediate stage"
+    names = {"ring-planet": "the ring-planet mesh's", "sun-planet": "the sun-planet mesh's"}
+    names["stage 2"] = "the intermediate stage's"
     worst = max(ours, key=lambda key: abs(ours[key] / PRINTED[key] - 1))
     ends = f"the thesis's {PRINTED[worst]:g} {'does not hold' if astray else 'holds'}"
     page.answer(
         "How high are the contact stresses of the gears at rated torque?",
-        f"The high-speed stage of the 2 MW gearbox has {high:.0f}\u00a0MPa, {ours[worst]:.2f} "
-        f"times {names[worst]}: {ends}.",
+        "The high-speed stage of the 2\u00a0MW gearbox has a contact pressure of "
+        f"{value_text(high, 'MPa')}, {ours[worst]:.2f} times {names[worst]}: {ends}.",
         [
             page.judged(
                 f"2 MW, {mesh_of('stage 3')}: pressure", "pressure, high-speed stage", "by hand"
@@ -126,18 +126,21 @@ def answer(page: Page, pressures: dict[str, float]) -> None:
             ),
             *(
                 page.value(
-                    f"high-speed stage over {names[key]}", one, beside=PRINTED[key], by="thesis"
+                    f"pressure of the high-speed stage over {names[key]}",
+                    one,
+                    beside=PRINTED[key],
+                    by="thesis",
                 )
                 for key, one in ours.items()
             ),
             page.judged(
                 "2 MW, sun over ring: pressures of equal forces and faces",
-                "sun's mesh over the ring's",
+                "pressure of the sun-planet mesh over the ring-planet mesh's",
                 "Hertz: root of 5",
             ),
         ],
         PRESSURES,
-        ["Modules and face widths of the 2 MW gearbox were chosen, not read."],
+        ["Modules and face widths of the 2 MW gearbox are not printed: they are assumed."],
         claim="holds in part" if astray else "holds",
     )
 

@@ -6,7 +6,7 @@ from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import published_planetary as published
 from fe_drivetrain.dynamics import distinct, divergence_speeds, system_modes, turning_modes
 from fe_drivetrain.report import crosses
-from fe_drivetrain.report.number_text import percent_text
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Run, Target
 
 BY_SPEED = "Frequencies seen from the carrier, five planets, against its speed"
@@ -22,13 +22,14 @@ AT_REST = Target(DIFFERENCE, 0.0, 5e-4, DIGITS, published.COOLEY_PARKER, basis="
 def answer(page: Page, apart: dict[int, float], limit: float) -> None:
     """State how close frequencies at rest are to the print, and at what speed the first is 0."""
     worst = max(apart.values())
-    agree = "agree with the print" if worst <= AT_REST.within else "differ from the print"
+    agree = "agree with" if worst <= AT_REST.within else "differ from"
+    shown = value_text(100 * worst, "%")
     page.answer(
-        "What does the turning frame add to the frequencies of a planetary stage?",
-        f"At rest all frequencies {agree} within {percent_text(worst)}; turning parts each "
-        f"translational pair, and the first frequency is zero at {limit:.4f} of sqrt(k_p/m_p).",
+        "How does the speed of the carrier change the natural frequencies of a planetary stage?",
+        f"Frequencies at rest {agree} the published ones within {shown}; as the carrier turns "
+        f"faster, the lowest falls to zero at {limit:.4f} times sqrt(k_p/m_p).",
         [
-            page.value("speed at which the first frequency is zero, over sqrt(k_p/m_p)", limit),
+            page.value("speed at which the lowest frequency is zero, over sqrt(k_p/m_p)", limit),
             *(
                 page.value(
                     f"largest difference at rest, {planets} planets [%]",
@@ -40,11 +41,15 @@ def answer(page: Page, apart: dict[int, float], limit: float) -> None:
             ),
             page.judged(
                 "three planets: parting of the first pair by speed",
-                "parting of the first pair by speed",
+                "splitting of the first pair of frequencies by speed",
                 "perturbation",
             ),
         ],
         BY_SPEED,
+        [
+            "k_p is the stiffness of a planet's bearing, m_p the mass of a planet.",
+            "Speed splits each pair of equal frequencies of translational modes.",
+        ],
     )
     page.say(
         "In the frame of the carrier Coriolis terms part every pair of translational modes in "

@@ -109,7 +109,7 @@ def state_needed(
     subject = "torsional masses" if level == "torsional" else level
     ends = f"{len(others)} need other levels"
     if len(others) == 1:
-        ends = f"{str(others[0]['question']).partition(' [')[0]} needs {others[0]['level']}"
+        ends = f"the {str(others[0]['question']).partition(' [')[0]} needs {others[0]['level']}"
     machine_name = machine.title.partition(" (")[0]
     figures = [
         page.value(
@@ -122,20 +122,20 @@ def state_needed(
         if value is not None and (other := enough.values[question]) is not None
     ]
     page.answer(
-        f"Which level of detail do questions on the {machine_name} need?",
-        f"{subject.capitalize()} settle {count} of {len(needed)} questions within "
-        f"{100 * TOLERANCE:g}\u00a0% of the finest level; {ends}.",
+        f"Which level of detail does a model of the {machine_name} need?",
+        f"{subject.capitalize()} answer {count} of {len(needed)} questions within "
+        f"{100 * TOLERANCE:g}\u00a0% of the finest model; {ends}.",
         [
             *figures[:5],
             page.value(
-                f"time of the level of {level} [s]",
+                f"computing time, {level} [s]",
                 enough.seconds,
                 beside=finest.seconds,
                 by="finest level",
             ),
         ],
         BY_QUESTION.format(machine_name),
-        [f"The finest level here is {finest.name}; errors are against it."],
+        [f"Differences are those from the finest model here: {finest.name}."],
     )
 
 

@@ -103,11 +103,13 @@ def answer(page: Page, rows: list[Record]) -> None:
     names = {id(row): f"rim of {row[THICKNESS]:.0f} mm" for row in (thin, thick)}
     page.answer(
         "How thin may the rim of a ring gear be, if the model has a rigid ring?",
-        f"With a rigid ring the lowest frequency is right within {NEAR:g}\u00a0% for rims of "
-        f"{enough:.0f}\u00a0mm and more; a rim of {thin[THICKNESS]:.0f}\u00a0mm lowers "
-        f"it by {-thin[LOWEST]:.0f}\u00a0%.",
+        f"Modelling the ring gear as rigid gives the lowest frequency within {NEAR:g}\u00a0% for "
+        f"rims of at least {enough:.0f}\u00a0mm; a {thin[THICKNESS]:.0f}\u00a0mm rim lowers it by "
+        f"{-thin[LOWEST]:.0f}\u00a0%.",
         [
-            page.value(f"least thickness within {NEAR:g} %, of those computed [mm]", enough),
+            page.value(
+                f"thinnest rim of those computed with an error below {NEAR:g} % [mm]", enough
+            ),
             *(
                 page.value(f"change of the lowest frequency, {names[id(row)]} [%]", row[LOWEST])
                 for row in (thin, thick)
@@ -123,12 +125,15 @@ def answer(page: Page, rows: list[Record]) -> None:
             ),
             page.judged(
                 "rim of 10 mm squeezed by 1 kN: change of the diameter",
-                "rim of 10 mm squeezed by 1 kN",
+                "change of diameter, 10 mm rim squeezed by 1 kN",
                 "Timoshenko",
             ),
         ],
         HERO,
-        ["The rim is a thin ring without shear or stretching; 40 mm are a quarter of its radius."],
+        [
+            "The rim is modelled as a thin ring without shear or stretching, although 40 mm are a "
+            "quarter of its radius."
+        ],
     )
 
 

@@ -79,8 +79,9 @@ def answer(page: Page, rows: list[Record], numbers: dict[int, dict[str, int]]) -
     page.answer(
         "Which kinds of modes do helical planets have in three dimensions, and how many?",
         f"With {min(numbers)} to {most} planets the stage has {counts['rotational']} "
-        f"rotational-axial modes, {counts['translational'] // 2} translational-tilting pairs, and "
-        f"planet modes N\u00a0-\u00a03 times each, {'as' if holds else 'not as'} proved.",
+        f"rotational-axial modes, {counts['translational'] // 2} translational-tilting pairs and "
+        f"{counts['planet'] / (most - 3):g} planet modes for each planet beyond three, "
+        f"{'as' if holds else 'not as'} proved.",
         [
             page.value(
                 f"rotational-axial modes, {most} planets", counts["rotational"], beside=12, by=by
@@ -94,11 +95,11 @@ def answer(page: Page, rows: list[Record], numbers: dict[int, dict[str, int]]) -
             page.value(
                 f"planet modes, {most} planets", counts["planet"], beside=6 * (most - 3), by=by
             ),
-            page.value("lowest frequency of all [Hz]", lowest),
+            page.value("lowest natural frequency [Hz]", lowest),
         ],
         HERO,
         [
-            "With bearings in the middle of the faces one more symmetry leaves the central bodies "
+            "With bearings in the middle of the face widths, symmetry leaves sun, ring and carrier "
             "at rest in one of the twelve."
         ],
         claim="holds" if holds else "does not hold",

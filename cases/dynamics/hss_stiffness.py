@@ -16,7 +16,7 @@ from fe_drivetrain.dynamics.torsion import (
     natural_modes,
 )
 from fe_drivetrain.report import trace
-from fe_drivetrain.report.number_text import formatted, value_text
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 from fe_drivetrain.report.suite.chosen import SETTING
 
@@ -26,6 +26,7 @@ SPRING = 2.81e4 / 24.0
 FACTORS = (0.1, 1.0, 10.0)
 STILL = 1.0  # %, of a frequency that the stiffness does not move
 MOVING = "{}: frequencies that move by more than 0.1 %"
+LOST = "lowest torque over rated after loss of the generator, {} of the stiffness"
 
 
 @case(
@@ -78,14 +79,14 @@ def own_answer(page: Page, first: Record, torque: Record) -> None:
     hz = value_text(first["rises most, as tabled [Hz]"], "Hz")
     page.answer(
         "Which frequencies does the stiffness of the high-speed shaft move?",
-        f"From 10 to 1000\u00a0% of its stiffness the mode of {hz} rises by {most:.0f}\u00a0%, "
-        f"the lowest by {lowest:.2g}\u00a0%.",
+        f"From a tenth to ten times its stiffness, the shaft raises the mode at {hz} by "
+        f"{most:.0f}\u00a0% and the lowest by {lowest:.2g}\u00a0%.",
         [
             page.value("largest rise of a mode [%]", most),
             page.value("rise of the lowest mode [%]", lowest),
             page.value("rise of the highest mode [%]", first["highest rises by [%]"]),
             *(
-                page.value(f"least torque after loss of the generator, {k} stiffness", torque[k])
+                page.value(LOST.format(k), torque[k])
                 for k in (f"{100 * factor:g} %" for factor in FACTORS)
             ),
         ],
@@ -100,11 +101,12 @@ def answer(page: Page, first: Record, torque: Record) -> None:
     )
     holds = highest < STILL < most
     hz = f"{first['rises most, as tabled [Hz]']:.0f}"
+    still = f"less than {STILL:g}\u00a0%" if highest < STILL else f"{highest:.2g}\u00a0%"
     page.answer(
         "Which frequencies does the stiffness of the high-speed shaft move?",
-        f"From 10 to 1000\u00a0% the {hz}\u00a0Hz mode of A rises by {most:.0f}\u00a0%, its "
-        f"lowest by {lowest:.0f}\u00a0%, its highest by {formatted(highest, 2, '%')}\u00a0%, "
-        f"{'as' if holds else 'not as'} the thesis states.",
+        f"From a tenth to ten times the stiffness, drivetrain A's {hz}\u00a0Hz mode rises by "
+        f"{most:.0f}\u00a0%, its highest by {still}, {'as' if holds else 'not as'} the thesis "
+        "states.",
         [
             page.value(f"rise of the {hz} Hz mode [%]", most),
             page.value("rise of the lowest mode [%]", lowest),
@@ -112,12 +114,12 @@ def answer(page: Page, first: Record, torque: Record) -> None:
                 "rise of the highest mode [%]", highest, at_most=STILL, by="thesis: unmoved"
             ),
             *(
-                page.value(f"least torque after loss of the generator, {k} stiffness", torque[k])
+                page.value(LOST.format(k), torque[k])
                 for k in (f"{100 * factor:g} %" for factor in FACTORS)
             ),
         ],
         MOVING.format(first["drivetrain"]),
-        ["The generator's spring of A is not printed: it is taken as that of D for its inertia."],
+        ["The generator's spring of A is not printed: it is scaled from that of D by inertia."],
         claim="holds" if holds else "does not hold",
     )
 

@@ -87,16 +87,16 @@ def answer(page: Page, prints: list[Difference]) -> None:
     met = len(prints) - len(far)
     page.answer(
         "Does the assembled planetary stage have the frequencies that Lin and Parker print?",
-        f"{met} of {len(prints)} printed frequencies come out within half of their last "
-        f"digit; {shown}\u00a0Hz are off by at most {max(map(distance, far)):.1f}\u00a0Hz."
+        f"{met} of {len(prints)} printed frequencies are met within their rounding; the others "
+        f"({shown}\u00a0Hz) differ by at most {max(map(distance, far)):.1f}\u00a0Hz."
         if far
-        else f"All {len(prints)} printed frequencies come out within half of their last digit.",
+        else f"All {len(prints)} printed frequencies are met within their rounding.",
         [
             page.value("printed frequencies that are met", met, beside=len(prints), by="printed"),
             *(
                 page.judged(
                     f"{planets} planets: {DIFFERENCE}",
-                    f"largest difference, {planets} planets",
+                    f"largest difference of those met, {planets} planets",
                     "half of the last digit",
                 )
                 for planets in LIN_PARKER_PRINTED
@@ -114,7 +114,10 @@ def answer(page: Page, prints: list[Difference]) -> None:
             ),
         ],
         HERO,
-        ["The print was not read itself, but the tests of a public program that follows it."],
+        [
+            "The paper itself was not read: printed values are those in the tests of a public "
+            "program."
+        ],
         claim="holds in part" if far else "holds",
     )
     page.say("Planet modes are the same whatever the number of planets; of six nothing is printed.")

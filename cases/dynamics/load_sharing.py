@@ -83,9 +83,9 @@ def answer(page: Page, rows: list[Record]) -> None:
     same = "as" if all(check.passed for check in page.checks) else "not as"
     page.answer(
         "How unevenly do planets share the load when one pin is out of place?",
-        f"K_gamma is {at[3, 'floating'][SHARING]:.4f} with three planets and a floating sun, "
-        f"{at[4, 'floating'][SHARING]:.4f} with four, {at[3, 'fixed'][SHARING]:.4f} with a fixed "
-        f"sun, {same} the closed form has it.",
+        f"The load-sharing factor K_gamma is {at[3, 'floating'][SHARING]:.4f} for three planets "
+        f"with a floating sun, but {at[3, 'fixed'][SHARING]:.4f} with a fixed sun, {same} the "
+        "closed form gives.",
         [
             *(
                 page.value(
@@ -97,20 +97,20 @@ def answer(page: Page, rows: list[Record]) -> None:
                 for planets, sun in ((3, "floating"), (4, "floating"), (3, "fixed"), (7, "fixed"))
             ),
             page.value(
-                "largest difference of ten from the closed form [%]", 100 * worst, at_most=0.001
+                "largest difference from the closed form, ten cases [%]", 100 * worst, at_most=0.001
             ),
             page.judged(
                 "four planets, little torque: load of planet 1 over the mean",
-                "four planets, little torque: planet 1 over the mean",
+                "four planets at low torque: load of planet 1 over the mean",
                 "statics",
             ),
         ],
         HERO,
         [
-            f"The error of the pin is {SHARE:g} of the mean load over the stiffness of a planet's "
-            "branch.",
-            "Four planets with teeth that only press carry in pairs of opposite ones: at little "
-            "torque two carry all.",
+            f"The pin's error, times the stiffness of a planet's branch, is {SHARE:g} of the mean "
+            "load of a planet.",
+            "Teeth can only push: at low torque two opposite planets of four carry all of the "
+            "load.",
         ],
     )
 

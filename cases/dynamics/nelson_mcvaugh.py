@@ -268,8 +268,8 @@ def answer(page: Page, found: Whirl) -> None:
     worst = 100.0 * max(float(one.max()) for one in apart.values())
     page.answer(
         "Does the program find the published critical speeds of Nelson and McVaugh's rotor?",
-        f"All twelve published critical speeds are met within {formatted(worst, 2)}\u00a0%, less "
-        "than the rounding of the printed dimensions leaves open.",
+        f"All twelve published critical speeds are met within {formatted(worst, 2)}\u00a0%; the "
+        "rounding of the printed dimensions alone could explain more.",
         [
             *(
                 page.judged(
@@ -281,11 +281,13 @@ def answer(page: Page, found: Whirl) -> None:
             ),
             page.judged(
                 "whirl of 2 times the speed: critical speed 1",
-                "critical speed 1 of whirl of twice the speed",
+                "critical speed 1, whirl at twice the shaft's speed",
                 "published",
             ),
             page.value("largest difference of twelve critical speeds [%]", worst),
         ],
         hero=HERO,
-        cautions=["Dimensions are printed to a tenth of a millimetre; the paper was not read."],
+        cautions=[
+            "Dimensions are printed to a tenth of a millimetre; the paper itself was not read."
+        ],
     )

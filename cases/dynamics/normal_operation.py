@@ -122,7 +122,7 @@ def own_answer(page: Page, rows: list[Record], apart: float, one: Rated) -> None
     most = max(rows, key=lambda row: float(str(row["HSS"])))
     first = first_held(one)
     page.answer(
-        "How much more than the rotor's does the torque of the shafts swing in operation?",
+        "How much more does the torque of the shafts swing in operation than that of the rotor?",
         f"Shafts swing up to {float(str(most['HSS'])):.2f} times as much as the rotor's torque, at "
         f"{most['order']}; the first mode with the generator held is at "
         f"{value_text(first, 'Hz')}.",
@@ -149,32 +149,26 @@ def own_answer(page: Page, rows: list[Record], apart: float, one: Rated) -> None
 
 def answer(page: Page, apart: float, thrice: dict[str, float]) -> None:
     """State how equally the shafts swing, and how much more than the rotor at 3P."""
-    most = max(thrice, key=lambda letter: thrice[letter])
+    fast = {
+        letter: page.judged(
+            f"drivetrain {letter}, 3P: swing of the HSS in time, of the rotor's as 1",
+            f"swing of the high-speed shaft at 3P over the rotor's, drivetrain {letter}",
+            "frequency response",
+        )
+        for letter in thrice
+    }
+    most = max(fast, key=lambda letter: fast[letter].value)
     same = apart < SAME
     page.answer(
-        "Do all shafts of a drivetrain have the same torque over rated in normal operation?",
-        f"All shafts swing equally within {percent_text(apart)}, {'as' if same else 'not as'} "
-        f"printed for B; at 3P those of {most} swing {thrice[most]:.2f} times as much as the "
-        "rotor's torque.",
-        [
-            page.judged(
-                APART,
-                "largest difference between shafts",
-                unit="%",
-            ),
-            *(
-                page.judged(
-                    f"drivetrain {letter}, 3P: swing of the HSS in time, of the rotor's as 1",
-                    f"swing at 3P, drivetrain {letter}",
-                    "frequency response",
-                )
-                for letter in thrice
-            ),
-        ],
+        "Does torque over rated swing equally in all shafts of a drivetrain in normal operation?",
+        f"Torque over rated swings equally in all shafts within {percent_text(apart)}, "
+        f"{'as' if same else 'not as'} printed for B; at 3P, {most}'s high-speed shaft swings "
+        f"{fast[most].value:.2f} times the rotor's torque.",
+        [page.judged(APART, "largest difference between shafts", unit="%"), *fast.values()],
         RESPONSE,
         [
-            f"The printed {PRINTED} is not computed: it is that of the measured torque, which is "
-            "not public."
+            f"The printed factor of {PRINTED} is not computed: it belongs to a measured torque "
+            "that is not public."
         ],
         claim="holds" if same else "does not hold",
     )

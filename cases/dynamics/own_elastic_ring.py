@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common.typeset import MINUS
 from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics import (
@@ -155,11 +156,13 @@ def check(page: Page, machine: Machine, number: int, rigid: Above, rows: list[Re
 def answer(page: Page, chosen: ChosenDrivetrain, number: int, rows: list[Record]) -> None:
     """State what a thin and a thick rim take off the frequencies."""
     thin, thick = rows[0], rows[-1]
+    change = f"{thin[CHANGE]:+.2g}".replace("-", MINUS)
     page.answer(
-        "How thin may the rim of a ring gear be for a rigid ring to hold?",
+        "How thin may the rim of a ring gear be, if the model has a rigid ring?",
         f"A rim of {thin[THICKNESS]:.0f}\u00a0mm changes the frequency at "
-        f"{value_text(thin['of the frequency [Hz]'], 'Hz')} by {thin[CHANGE]:+.2g}\u00a0%, one of "
-        f"{thick[THICKNESS]:.0f}\u00a0mm none by more than {abs(thick[CHANGE]):.2g}\u00a0%.",
+        f"{value_text(thin['of the frequency [Hz]'], 'Hz')} by {change}\u00a0%; one of "
+        f"{thick[THICKNESS]:.0f}\u00a0mm changes no frequency by more than "
+        f"{abs(thick[CHANGE]):.2g}\u00a0%.",
         [
             *(
                 page.value(f"{CHANGE.partition(' [')[0]}, {row[THICKNESS]:.0f} mm [%]", row[CHANGE])

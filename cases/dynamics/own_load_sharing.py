@@ -174,8 +174,8 @@ def answer(page: Page, chosen: ChosenDrivetrain, found: Shared, error: float) ->
     still, moved = load_sharing(found.rated), found.sharing(1.0)
     page.answer(
         "How unevenly do the planets share the load when one pin is out of place?",
-        f"A pin {error:g}\u00a0µm ahead takes K_gamma at rated torque from {still:.3f} to "
-        f"{moved:.3f}; a planet loses contact below {100 * found.parts:.2g}\u00a0% of it.",
+        f"A pin {error:g}\u00a0µm ahead raises K_gamma at rated torque from {still:.3f} to "
+        f"{moved:.3f}; a planet loses contact below {100 * found.parts:.2g}\u00a0% of that torque.",
         [
             page.value(
                 "K_gamma at rated torque, pin out of place", moved, beside=still, by="without"
@@ -183,7 +183,9 @@ def answer(page: Page, chosen: ChosenDrivetrain, found: Shared, error: float) ->
             page.value("K_gamma by a sun that only turns", found.closed(1.0, found.fixed)),
             page.value("K_gamma by a floating sun", found.closed(1.0, found.floating)),
             page.judged(ENDS.partition(" [")[0], "change of planet 1 by the error", "fixed sun"),
-            page.value("torque below which a planet parts [%]", 100 * found.parts),
+            page.value(
+                "torque below which a planet loses contact, of rated [%]", 100 * found.parts
+            ),
         ],
         SHARING,
         [

@@ -7,6 +7,7 @@ import numpy as np
 from fe_drivetrain.bearing import load_zones, pressures
 from fe_drivetrain.cases.dynamics.planets_on_pins import TURNS, first_stage
 from fe_drivetrain.common import Floats, InputError
+from fe_drivetrain.common.typeset import MINUS
 from fe_drivetrain.drivetrain_file.carriers import carriers_of
 from fe_drivetrain.drivetrain_file.gear_stages import PlanetaryData
 from fe_drivetrain.dynamics import (
@@ -213,16 +214,21 @@ def answer(page: Page, chosen: ChosenDrivetrain, rows: list[Record], carriers: l
     key = "largest load [kN]"
     most, rest = float(str(worst[key])), float(str(linear[key]))
     pressure = float(str(worst["pressure [MPa]"]))
+    more = f"{100 * (most / rest - 1):+.2g}\u00a0%".replace("-", MINUS)
     cautions = [f"{chosen.title}: rings are rigid, and so is the gearbox's housing."]
     if len(carriers) == 1:
         cautions.append("The carrier is rigid: the file names no carrier.component.")
     page.answer(
         "What do rollers and clearance do to the loads of the planets' bearings?",
-        f"On rollers a planet's bearing carries up to {value_text(most, 'kN')} with tilt, "
-        f"{100 * (most / rest - 1):+.2g}\u00a0% from linear bearings, and "
-        f"{value_text(pressure, 'MPa')} of pressure.",
+        f"With rollers modelled, a planet bearing carries up to {value_text(most, 'kN')}, {more} "
+        f"from linear bearings; its contact pressure is {value_text(pressure, 'MPa')}.",
         [
-            page.value("largest load, tilt at the hub, too [kN]", most, beside=rest, by="linear"),
+            page.value(
+                "largest load, with a tilt moment at the hub, too [kN]",
+                most,
+                beside=rest,
+                by="linear",
+            ),
             page.value(
                 "largest load, torque and gravity [kN]",
                 calm[key],

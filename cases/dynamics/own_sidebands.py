@@ -127,8 +127,8 @@ def answer(
     near = 0.5 * resolved
     page.answer(
         "How far do sidebands stand from a mesh line, and what moves them?",
-        f"Sidebands of the {line:.4g}\u00a0Hz line stand off by the main shaft's ringing: "
-        f"{flat:.2f}\u00a0Hz torsional, {space:.2f}\u00a0Hz in three dimensions.",
+        f"Sidebands of the {line:.4g}\u00a0Hz line stand {flat:.2f}\u00a0Hz from it in the "
+        f"torsional model, {space:.2f}\u00a0Hz in three dimensions, as the main shaft rings.",
         [
             page.value("sidebands from the mesh line, torsional [Hz]", flat, near),
             page.value("sidebands from the mesh line, three dimensions [Hz]", space, near),

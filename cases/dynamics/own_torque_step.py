@@ -207,7 +207,7 @@ def answer(
     page.answer(
         "Which forces do meshes that vary take when the rated torque comes at once?",
         f"In three dimensions meshes carry up to {space.value(MAXIMUM):.2f} times their static "
-        f"force, torsional {flat.value(MAXIMUM):.2f}; teeth {teeth}.",
+        f"force, in the torsional model {flat.value(MAXIMUM):.2f} times; teeth {teeth}.",
         [
             *(
                 page.value(f"{what}, {name}", one.value(what), one.band(what))

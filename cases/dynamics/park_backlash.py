@@ -320,26 +320,30 @@ def answer(
     page.answer(
         "Does backlash bound the mesh forces of Park et al. in starts and stops?",
         (
-            f"No: in a {still[0]}, they pass {UNBOUND:g} times static with {backlash}"
-            + (" as without it." if still[0] in loose else ", which they do not without it.")
+            f"No: in a {still[0]}, mesh forces exceed {UNBOUND:g} times static, "
+            + (
+                f"with {backlash} or without."
+                if still[0] in loose
+                else f"but only with {backlash}."
+            )
             if still
-            else f"Yes: with {backlash} forces stay below {formatted(highest, 2)} of static, "
-            + ("which have no bound without it." if loose else "and have a bound without it, too.")
+            else f"Yes: with {backlash} forces stay below {formatted(highest, 2)} times static; "
+            + ("without it they have no bound." if loose else "without it they have a bound, too.")
         ),
         key_figures(page, with_gap, without, changes, band),
         WAVES,
         [
-            "That teeth are loaded though they are apart is the pull of linear springs: with "
-            "backlash the force is nothing there, or that of the other flank.",
+            "Linear springs pull where teeth are apart; with backlash the force is zero there, or "
+            "acts on the other flank.",
             *(
                 [
-                    "What grows without bound is the force on the angle, -1/2 k' delta^2, of a new "
-                    "pair of teeth that takes its whole deflection from the turning at once."
+                    "Forces grow by the reaction torque of a stiffness that follows the angle: a "
+                    "new pair of teeth takes its whole deflection from the rotation at once."
                 ]
                 if still and by_angle
                 else []
             ),
-            "Backlash is not printed, and is equal in all meshes here.",
+            "Backlash is not printed; here it is equal in all meshes.",
         ],
     )
 
@@ -362,7 +366,7 @@ def key_figures(
         ),
         page.value("start: largest force over static, with backlash", start[LARGEST], band),
         page.value(
-            "start: teeth apart [% of time]",
+            "start: time with teeth apart [% of time]",
             start[APART],
             beside=without["start"].row[APART],
             by="springs that pull",

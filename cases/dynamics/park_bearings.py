@@ -319,25 +319,34 @@ def answer(page: Page, chosen: ChosenDrivetrain, found: dict[Point, Found]) -> N
     others = max(found[at].rate for at in found if at.bearings == 1.0)
     whose = "as its file states it" if chosen.own else "as assumed"
     rate = formatted(found[worst].rate, 2)
+    bearings = f"with bearings {formatted(worst.bearings, 2)} times as stiff"
+    ends = f"{whose}, it {'does not' if stated < GROWS else 'grows, too'}"
+    if worst.bearings == 1.0:
+        bearings = f"with bearings {whose}"
+        ends = f"at the stated speed it {'does not' if stated < GROWS else 'grows, too'}"
     page.answer(
-        f"Is the drivetrain of {'this file' if chosen.own else 'Park et al.'} stable, whatever its "
-        "bearings, contact ratios and speed?",
+        f"Is the drivetrain of {'this file' if chosen.own else 'Park et al.'} stable for every "
+        "bearing stiffness, contact ratio and speed?",
         (
-            f"No: unloaded, it grows by {rate}\u00a0per\u00a0second at "
-            f"{formatted(worst.speed, 2)} times its speed with bearings times "
-            f"{formatted(worst.bearings, 2)}; at its own, {whose}, it "
-            + ("is stable." if stated < GROWS else "grows, too.")
+            f"No: {bearings}, vibration grows at a rate of {rate}\u00a01/s at "
+            f"{formatted(worst.speed, 2)} times the stated speed; {ends}."
         )
         if grows
-        else "Yes: with none of the bearings, contact ratios and speeds tried does an undisturbed "
-        "motion grow.",
+        else "Yes: with none of the bearings, contact ratios and speeds tried does vibration grow: "
+        f"all rates stay below {GROWS:g}\u00a01/s.",
         [
-            page.value("largest growth [1/s]", found[worst].rate),
-            page.value("at bearings over the stated ones of", worst.bearings),
-            page.value("at a speed over the stated one of", worst.speed),
-            page.value(f"largest growth {whose}, stated speed [1/s]", stated, at_most=GROWS),
-            page.value(f"largest growth {whose}, all speeds tried [1/s]", others, at_most=GROWS),
-            page.value("points that grow [%]", 100.0 * len(grows) / len(found)),
+            page.value("largest rate of growth [1/s]", found[worst].rate),
+            page.value("its bearing stiffness over the stated one", worst.bearings),
+            page.value("its speed over the stated one", worst.speed),
+            page.value(
+                f"largest rate of growth {whose}, stated speed [1/s]", stated, at_most=GROWS
+            ),
+            page.value(
+                f"largest rate of growth {whose}, all speeds tried [1/s]", others, at_most=GROWS
+            ),
+            page.value(
+                "combinations tried in which vibration grows [%]", 100.0 * len(grows) / len(found)
+            ),
         ],
         hero=CHART if grows else BY_BEARINGS,
         cautions=[
@@ -349,7 +358,7 @@ def answer(page: Page, chosen: ChosenDrivetrain, found: dict[Point, Found]) -> N
                     "source rest on them."
                 ]
             ),
-            "Meshes vary as square waves, those of one frequency at a time; linear springs pull as "
-            "they push, so that nothing limits growth.",
+            "The drivetrain is unloaded; meshes of one frequency at a time vary as square waves; "
+            "linear springs pull as well as push, so that nothing limits growth.",
         ],
     )

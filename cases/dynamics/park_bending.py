@@ -21,7 +21,7 @@ from fe_drivetrain.dynamics import (
 from fe_drivetrain.dynamics.bodies.machine_shafts import in_series, shaft_slices
 from fe_drivetrain.dynamics.bodies.static import static
 from fe_drivetrain.report import bars
-from fe_drivetrain.report.number_text import percent_text
+from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 
 COSINE = float(np.cos(np.radians(20.0)) ** 2)
@@ -92,23 +92,26 @@ def answer(
     tilts = loose - 1
     page.answer(
         "Does shaft bending reach the gear meshes by the equations of Park et al. 2021?",
-        f"Shaft bending does not reach a mesh as printed: {tilts} tilts are free; hinges let "
-        f"100\u00a0kN\u00a0m change mesh forces by {forces:.2f}\u00a0kN."
+        "By the printed equations shaft bending does not reach the gear meshes; with hinges added, "
+        f"100\u00a0kN\u00a0m of bending change mesh forces by {value_text(forces, 'kN')}."
         if tilts
-        else "Shaft bending reaches the meshes: 100\u00a0kN\u00a0m change mesh forces by "
-        f"{forces:.2f}\u00a0kN.",
+        else "Shaft bending reaches the meshes: 100\u00a0kN\u00a0m of bending change mesh forces "
+        f"by {value_text(forces, 'kN')}.",
         [
-            page.value("largest mesh force of 100 kN m, with hinges [kN]", forces),
+            page.value("largest mesh force by 100 kN m of bending, with hinges [kN]", forces),
             page.value(
-                "motions that no spring feels, as printed", loose, beside=1, by="with hinges"
+                "motions without any stiffness, as printed", loose, beside=1, by="with hinges"
             ),
             page.value(
-                "generator torque that balances the rotor [%]", share, beside=30.0, by="as printed"
+                "generator torque that balances the rotor, of the rotor's [%]",
+                share,
+                beside=30.0,
+                by="as printed",
             ),
-            page.value("standstill with the printed 30 % after [s]", stops),
+            page.value("time to standstill with the printed 30 % [s]", stops),
             page.judged("speed ratio", by="Table 2", printed=str(park.RATIO)),
             page.value(
-                f"{ABOVE}, one shaft in all directions",
+                f"{ABOVE.partition(' [')[0]}, shafts solid bars [Hz]",
                 bar[ABOVE],
                 beside=printed[ABOVE],
                 by="joint of Eq 15",
@@ -116,10 +119,12 @@ def answer(
         ],
         BENDING,
         [
+            f"As printed, {tilts} tilts of the bodies have no stiffness at all.",
             "The joint of Eq 15 counts its rotation twice: the first bending mode is "
             f"{percent_text(printed[ROTOR] / bar[ROTOR] - 1.0)} higher with it.",
-            f"A generator torque of 30 % of the rotor's would stop the machine after {stops:.0f} "
-            f"s: balance needs {share:.1f} %, so that 3 % may have been meant.",
+            f"The printed generator torque, 30\u00a0% of the rotor's, would stop the machine after "
+            f"{stops:.0f}\u00a0s: balance needs {share:.1f}\u00a0%, so that 3\u00a0% may have been "
+            "meant.",
         ],
         claim="does not hold" if tilts else "holds",
     )

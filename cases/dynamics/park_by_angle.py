@@ -46,6 +46,7 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.report import error_bars, trace
 from fe_drivetrain.report.answer import Claim
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 LEAST, LARGEST = "least force of a mesh over the static one", "largest force over the static one"
@@ -314,9 +315,31 @@ def show_waves(page: Page, space: System, dt: float) -> None:
     page.chart(WAVES, shown, "time [s]", "force over static")
 
 
+def cautions(bounded: bool, strong: float) -> list[str]:
+    """What limits the answer: forces without bound, and what is assumed."""
+    found = []
+    if np.isfinite(strong):
+        found.append(
+            f"With a brake of {strong:g} times the operating torque, forces have no bound when "
+            "stiffness follows the angle, even with backlash (dynamics/park_backlash)."
+        )
+    if not bounded:
+        found.append(
+            "In the torsional model forces have no bound after the torque step, when stiffness "
+            "follows the angle."
+        )
+    return [
+        *found,
+        "Stiffness by time keeps the frequency of the printed speed while the speed changes.",
+        "Angles are those of the carrier and of the gear that drives each stage; contact ratios, "
+        "phases and damping are assumed.",
+    ]
+
+
 def answer(page: Page, found: dict[str, Effect], band: float, bounded: bool, strong: float) -> None:
     """State how much the angle changes, with its scatter, and whether it is needed."""
-    step, calm = found["torque step"], found["steady operation"]
+    step = found["torque step"]
+    phases = f"{len(step.by_time)} phases"
     apart, unsure = abs(step.change), step.scatter + band
     claim: Claim = ""
     if apart - unsure > step.of_phase:
@@ -324,42 +347,37 @@ def answer(page: Page, found: dict[str, Effect], band: float, bounded: bool, str
     elif apart + unsure <= step.of_phase:
         claim = "does not hold"
     words = {
-        "": "too uncertain to tell.",
-        "holds": "needed for steps.",
-        "does not hold": "that it is imperative does not hold.",
+        "": "Whether stiffness must follow the angle stays undecided",
+        "holds": "Mesh stiffness must follow the angle",
+        "does not hold": "Mesh stiffness need not follow the angle",
     }
     page.answer(
-        "Must the mesh stiffness follow the angle of the gears rather than the time?",
-        f"By angle a torque step's least mesh force moves by {step.change:.2f} ± {unsure:.2f} of "
-        f"static, a steady one's by {calm.change:.2f}: " + words[claim],
+        "Must the mesh stiffness follow the angle of the gears rather than time?",
+        f"{words[claim]}: after a torque step the lowest mesh force changes by "
+        f"{value_text(step.change, '', unsure)} of its static value.",
         [
             page.value(
-                f"torque step: change of the least force by angle, {len(step.by_time)} phases",
+                f"torque step: change of the lowest mesh force over static, {phases}",
                 step.change,
                 step.scatter + band,
             ),
-            page.value("torque step: half range of it over phases, by time", step.of_phase, band),
+            page.value(
+                "torque step: ± scatter of that force by phase, stiffness by time",
+                step.of_phase,
+                band,
+            ),
             *(
-                page.value(f"{name}: change of the least force", one.change, one.scatter + band)
+                page.value(
+                    f"{name}: change of the lowest mesh force over static",
+                    one.change,
+                    one.scatter + band,
+                )
                 for name, one in found.items()
                 if name != "torque step"
             ),
         ],
         COUNTED,
-        [
-            *(
-                [
-                    f"From a brake of {strong:g} times the torque of operation, forces by angle "
-                    "have no bound, nor with backlash (dynamics/park_backlash)."
-                ]
-                if np.isfinite(strong)
-                else []
-            ),
-            *([] if bounded else ["In the torsional model they have none after the torque step."]),
-            "K(t) keeps the frequency of the printed speed while the speed changes.",
-            "Angles are those of the carrier and of the gear that drives each stage; contact "
-            "ratios, phases and damping are assumed.",
-        ],
+        cautions(bounded, strong),
         claim=claim,
     )
     page.say(

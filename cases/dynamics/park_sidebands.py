@@ -99,22 +99,24 @@ def answer(
     farther = space > flat
     page.answer(
         "How far do sidebands stand from a mesh line, and what moves them?",
-        f"Sidebands stand off by the low-speed shaft's ringing: {flat:.2f}\u00a0Hz torsional, "
-        f"{space:.2f}\u00a0Hz in three dimensions; that it is farther there "
+        f"Sidebands stand {flat:.2f}\u00a0Hz from the mesh line in the torsional model, "
+        f"{space:.2f}\u00a0Hz in three dimensions: the paper's larger distance in three dimensions "
         + ("holds." if farther else "does not hold."),
         [
-            page.value("sidebands from the mesh line, torsional [Hz]", flat, near[0]),
-            page.value("sidebands from the mesh line, three dimensions [Hz]", space, near[1]),
+            page.value("distance of sidebands from the mesh line, torsional [Hz]", flat, near[0]),
+            page.value(
+                "distance of sidebands from the mesh line, three dimensions [Hz]", space, near[1]
+            ),
             page.value("mesh line, torsional [Hz]", lines[0], read, beside=LINE, by="Park et al."),
             page.value(
                 "mesh line, three dimensions [Hz]", lines[1], read, beside=LINE, by="Park et al."
             ),
-            page.value("sidebands of an eccentric gear 3: its speed [Hz]", TURNING),
+            page.value("distance of sidebands of an eccentric gear 3: its speed [Hz]", TURNING),
         ],
         BESIDE,
         [
-            "Bearings and bending lower the first mode here, and with it the distance; bearings "
-            "are assumed, as the source does not print them."
+            "The distance is the frequency at which the low-speed shaft rings: bearings and "
+            "bending lower it here. Bearings are assumed, as the source does not print them."
         ],
         claim="holds" if farther else "does not hold",
     )

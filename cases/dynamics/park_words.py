@@ -29,11 +29,12 @@ def answer(
     holds = nacelle > by[largest]
     flat, space = least["torsional"], least["three dimensions"]
     page.answer(
-        "What do the figures of Park et al. 2021 in time show?",
-        "Park's 0.4\u00a0s period is the first mode, "
-        f"{value_text(steps[0][PERIOD], 's')} as printed; that the nacelle's force "
-        f"({percent_text(nacelle / 100)}) outweighs eccentricity "
-        f"({percent_text(by[largest] / 100)}) {'holds' if holds else 'does not hold'}.",
+        "Do the statements of Park et al. 2021 on forces over time hold?",
+        ("Yes: mesh forces" if holds else "In part: mesh forces")
+        + f" swing in the first mode ({value_text(steps[0][PERIOD], 's')}), "
+        f"{'and' if holds else 'but'} the nacelle's force ({percent_text(nacelle / 100)}) "
+        f"{'changes' if holds else 'does not change'} them more than eccentricity "
+        f"({percent_text(by[largest] / 100)}).",
         [
             page.judged(
                 f"torque step, {steps[0]['meshes']}: {PERIOD.partition(' [')[0]}",
@@ -41,20 +42,22 @@ def answer(
                 "first mode",
             ),
             page.value(
-                "the same, all meshes wound twice [s]",
+                "the same, all meshes with stiffness along both axes [s]",
                 steps[2][PERIOD],
                 beside=0.4,
                 by="Park et al.",
             ),
-            page.value("least force over static, torsional", flat.value, flat.band),
-            page.value("least force over static, three dimensions", space.value, space.band),
+            page.value("lowest mesh force over static, torsional model", flat.value, flat.band),
+            page.value("lowest mesh force over static, three dimensions", space.value, space.band),
             page.value(f"change of mesh forces by an eccentric {largest} [%]", by[largest]),
             page.value("change of mesh forces by the nacelle's force [%]", nacelle),
         ],
         FORCES,
         [
-            "Whether mesh forces pull after the step depends on step, harmonics and phase of the "
-            "meshes, which is not printed."
+            "The paper's period of about 0.4\u00a0s is that of no mesh; the first mode comes to it "
+            "where meshes are stiffer than printed.",
+            "Whether mesh forces become negative after the torque step depends on time step, "
+            "harmonics and phase of the meshes; the phase is not printed.",
         ],
         claim="holds" if holds else "holds in part",
     )

@@ -13,7 +13,7 @@ from fe_drivetrain.dynamics import Machine, load_sharing, machine_of, plain_rung
 from fe_drivetrain.dynamics.time.machine_channels import machine_channels
 from fe_drivetrain.dynamics.time.running import running
 from fe_drivetrain.report import bars
-from fe_drivetrain.report.number_text import percent_text
+from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.report.suite.chosen import SETTING
 
@@ -160,10 +160,12 @@ def answer(page: Page, found: list[Rated]) -> None:
     decides = sun > 10.0 * rounding
     first = found[0]
     page.answer(
-        "What does agreement of models at rated torque show, as in the round robin of Figure 6.1?",
-        f"Statics fix every torque, within {percent_text(rounding)} of the printed ratios; models "
-        f"differ {'in the sharing of planets alone' if decides else 'in nothing'}, by "
-        f"{percent_text(sun)} of a mesh.",
+        "What does it prove that models agree at rated torque, as in the thesis's round robin?",
+        "Agreement of models at rated torque proves little: statics fixes all shaft torques; only "
+        f"planet sharing differs, by {value_text(100 * sun, '%')} of the mean mesh force."
+        if decides
+        else "Agreement of models at rated torque proves nothing: statics fixes all torques, and "
+        f"mesh forces differ by {value_text(100 * sun, '%')}.",
         [
             *(
                 page.value(f"torque of {name} [kN m]", value / 1e3)
@@ -171,7 +173,7 @@ def answer(page: Page, found: list[Rated]) -> None:
             ),
             page.value("mean force of a sun-planet mesh [kN]", mean(first) / 1e3),
             page.value(
-                "largest sun-planet force over the mean, less 1 [%]",
+                "largest excess of a sun-planet mesh force over the mean [%]",
                 100.0 * sun,
                 beside=100.0 * ring,
                 by="ring-planet",
@@ -179,9 +181,11 @@ def answer(page: Page, found: list[Rated]) -> None:
         ],
         LOADS,
         [
-            "Values of the partners A to F are in a figure alone, and cannot be compared.",
-            "Which rated torque was put in is not printed: Table 4.1 has 18.6 rpm, the machine "
-            "22.1.",
+            f"Computed torques have the printed ratios within {percent_text(rounding)}, which is "
+            "the rounding of the print.",
+            "Results of the partners A to F are printed as a figure alone, and are not compared.",
+            "The rated torque that the partners used is not printed: Table 4.1 has 18.6 rpm, the "
+            "machine 22.1 rpm.",
         ],
     )
 

@@ -23,6 +23,7 @@ from fe_drivetrain.comparison import ConvergenceInTime, InTime, converge_in_time
 from fe_drivetrain.dynamics import StopSequence
 from fe_drivetrain.dynamics.torsion import changed, natural_modes, two_masses
 from fe_drivetrain.report import chart, mark_events, trace
+from fe_drivetrain.report.number_text import value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.report.suite.chosen import SETTING
 
@@ -83,15 +84,15 @@ def own_answer(page: Page, one: Stopped, row: Record, loss: Record, swing: Recor
     turns = "reverses it" if least < 0.0 else "does not reverse it"
     page.answer(
         "How high do torques go when the drivetrain is shut down, and do they reverse?",
-        f"The fast shaft comes to {row['HSS, peak over rated']:.2f} of rated torque when the brake "
-        f"holds; losing the generator {turns}, {least:.2f} at least.",
+        f"The fast shaft reaches {row['HSS, peak over rated']:.2f} times rated torque when the "
+        f"brake holds; losing the generator {turns}: its lowest is {value_text(least)} of rated.",
         [
             page.value("peak over rated, fast shaft", row["HSS, peak over rated"]),
             page.value("peak over rated, main shaft", row["LSS, peak over rated"]),
             page.value(
-                "least torque of the main shaft in the shutdown, over rated", row["LSS, least"]
+                "lowest torque of the main shaft in the shutdown, over rated", row["LSS, least"]
             ),
-            page.value("least torque after loss of the generator, over rated", least),
+            page.value("lowest torque after loss of the generator, over rated", least),
             page.value(
                 "ringing with the brake on [Hz]",
                 swing["spectrum [Hz]"],
@@ -124,23 +125,23 @@ def answer(
     turned = [str(row["drivetrain"]) for row in losses if row["reversed"]]
     holds = lowest == "C" and fast["C"] < LIMIT
     page.answer(
-        "How high do torques go when a drivetrain is shut down, and where do they reverse?",
-        f"C's high-speed shaft comes to {fast['C']:.2f} of rated torque, "
-        f"{'the lowest, as' if holds else 'not as'} the thesis states; losing the generator "
+        "How high do torques go when drivetrains A to D are shut down, and where do they reverse?",
+        f"C's high-speed shaft peaks at {fast['C']:.2f} times rated torque, "
+        f"{'the lowest of all, as' if holds else 'not as'} the thesis states; generator loss "
         f"reverses torque in {', '.join(turned)}.",
         [
             page.value(
-                "peak over rated, high-speed shaft of C", fast["C"], beside=1.32, by="thesis"
+                "peak torque over rated, high-speed shaft of C", fast["C"], beside=1.32, by="thesis"
             ),
             page.value(
-                "largest of it by the instant of the brake",
+                "the same with the brake at its worst instant",
                 by_instant["HSS, largest peak over rated"],
                 at_most=LIMIT,
                 by="design loads",
             ),
-            page.value("least torque of C in the shutdown, over rated", rows[2]["LSS, least"]),
+            page.value("lowest torque of C in the shutdown, over rated", rows[2]["LSS, least"]),
             page.value(
-                "least torque of B after loss of the generator, over rated",
+                "lowest torque of B after loss of the generator, over rated",
                 losses[1]["all gears, HSS"],
             ),
             *(
@@ -158,8 +159,8 @@ def answer(
         [
             f"Brakes are sized so that the low-speed shaft reaches the printed {PEAK} of its rated "
             "torque; when they come is not printed.",
-            "Ranges of torque are larger than the printed ones: only the printed damping ratios "
-            "let the first mode decay.",
+            "Ranges of torque are larger than the printed ones: nothing but the printed damping "
+            "ratios lets the first mode decay.",
         ],
         claim="holds in part" if holds else "does not hold",
     )

@@ -333,37 +333,34 @@ def answer(
         "holds" if helps and near(shifts) else "holds in part" if helps else "does not hold"
     )
     said = "" if own else f": the thesis {claim}"
+    teeth = f"Spline teeth {'stay in' if most < 1.0 else 'lose'} contact at"
     word = "lowers" if helps else "does not lower"
     printed: KeyLimit = {} if own else {"beside": 1e6 * PRINTED, "by": "thesis"}
     page.answer(
-        "Is the sun's spline near losing contact, and does it help the planets share?",
-        f"Shift and tilt use {value_text(float(f'{100 * most:.2g}'), '%')} of what keeps spline "
-        f"teeth in contact; floating {word} K_gamma from {stiff.misplaced:.3f} to "
-        f"{free.misplaced:.3f}{said}.",
+        "Do the sun's spline teeth lose contact, and does the spline help planets share the load?",
+        f"{teeth} {value_text(float(f'{100 * most:.2g}'), '%')} of the limit; a floating sun "
+        f"{word} the load-sharing factor from {stiff.misplaced:.3f} to {free.misplaced:.3f}{said}.",
         [
-            page.value("largest share of that limit [%]", 100 * most, at_most=100.0),
+            page.value("share used of the limit of contact [%]", 100 * most, at_most=100.0),
             page.value(
-                "peak over mean of the teeth's loads",
+                "peak over mean of the spline teeth's loads",
                 max(x.worst.peak_over_mean for x in splines.values()),
             ),
             page.value(
-                "K_gamma, pin 50 um out of place, on a joint",
+                "load-sharing factor K_gamma, pin 50 µm out of place, sun on a joint",
                 free.misplaced,
                 beside=stiff.misplaced,
                 by="no spline",
             ),
             page.value(
-                "K_gamma, pin 50 um out of place, on the spline",
-                on.misplaced,
-                beside=stiff.misplaced,
-                by="no spline",
+                "the same, sun on its spline", on.misplaced, beside=stiff.misplaced, by="no spline"
             ),
-            page.value("shift of the sun in its ring, tilt at the hub [um]", shifts[1], **printed),
+            page.value("shift of the sun in its ring, tilt at the hub [µm]", shifts[1], **printed),
         ],
         HERO,
         [
             *([] if stated else ["The spline is assumed, of the sun's size: the file has none."]),
-            "Flanks of all teeth are perfect and without crowning; no friction.",
+            "Flanks of all teeth are perfect, without crowning and friction.",
             "Bearings are linear, and the carrier is rigid.",
         ],
         claim="" if own else claim,

@@ -219,9 +219,9 @@ def answer(
     then = at_last(rated, at_rated, misses[tip])
     page.answer(
         "What does tip relief do to the transmission error, at rest and in time?",
-        f"{1e6 * teeth.relief:.3g}\u00a0µm of relief {word} the static error {static}; {then}",
+        f"Tip relief of {1e6 * teeth.relief:.3g}\u00a0µm {word} the static error {static}; {then}",
         [
-            *of_rated(page, rated, at_rated),
+            *of_rated(page, rated, at_rated, misses[tip]),
             page.value(
                 "static error with tip relief [µm]",
                 1e6 * relieved,
@@ -238,7 +238,7 @@ def answer(
                 page.judged(
                     f"{name}: largest difference of the ripple in time from that of balanced "
                     "harmonics",
-                    f"largest difference from balanced harmonics, {name}",
+                    f"largest difference from harmonic balance, {name}",
                     "harmonic balance",
                     unit="%",
                 )
@@ -247,8 +247,8 @@ def answer(
         ],
         DYNAMIC,
         [
-            "Where the error swings further than the mean deflection, teeth part, which this mesh, "
-            "linear about its load, leaves out."
+            "Where the error swings further than the mean deflection, teeth part: the mesh is "
+            "linear about its load here and leaves that out."
         ],
     )
 
@@ -256,17 +256,20 @@ def answer(
 def at_last(rated: float, vibrates: list[float], misses: float) -> str:
     """What follows: the vibration [µm] at rated speed, or what a linear response misses [%]."""
     if not rated:
-        return f"a linear response then misses the vibration by up to {misses:.0f}\u00a0%."
+        return f"a linear response to it errs by up to {misses:.0f}\u00a0% in the vibration."
     at = f"at rated speed, {rated:.2g} of the natural frequency,"
     if not vibrates:
         return f"{at} the mesh follows it."
-    return f"{at} it vibrates by {vibrates[1]:.2g}\u00a0µm."
+    return f"{at} the gears vibrate by {vibrates[1]:.2g}\u00a0µm."
 
 
-def of_rated(page: Page, rated: float, found: list[float]) -> list[KeyFigure]:
-    """Figures of a user's pair at rated speed: its frequency, and the error [µm]."""
+def of_rated(page: Page, rated: float, found: list[float], misses: float) -> list[KeyFigure]:
+    """Figures of a user's pair at rated speed: its frequency, and the error [µm].
+
+    Without a rated speed it is what a linear response misses [%].
+    """
     if not rated:
-        return []
+        return [page.value("largest error of the linear response, with tip relief [%]", misses)]
     figures = [page.value("mesh frequency at rated speed over the natural one", rated)]
     name = "dynamic error at rated speed with tip relief [µm]"
     if found:

@@ -25,7 +25,7 @@ from fe_drivetrain.dynamics import (
 )
 from fe_drivetrain.dynamics.torsion import natural_modes, two_masses
 from fe_drivetrain.report import chart, mark_events, trace
-from fe_drivetrain.report.number_text import percent_text
+from fe_drivetrain.report.number_text import percent_text, value_text
 from fe_drivetrain.report.suite import Page, Record, Run, check_in_time
 
 PER_PERIOD = (20, 40, 80, 160)
@@ -65,17 +65,25 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, last: Rated, finest: list[Record]) -> None:
     """State how exact torques are with the shortest steps, and what the brake does."""
     key = "error of the torque, loss [%]"
-    worst = max(row[key] for row in finest)
+    by = {
+        method: max(row[key] for row in finest if row["method"] == method)
+        for method in dict.fromkeys(str(row["method"]) for row in finest)
+    }
+    others = [
+        f"{percent_text(worst / 100.0)} by {method}"
+        for method, worst in by.items()
+        if method != AVERAGE.name
+    ]
     wound = page.judged(
         f"drivetrain {last.letter}, brake of 1.2 rated: largest torque of the shaft over rated",
         "largest torque of the braked shaft, over rated",
         "twice the mean",
     )
     page.answer(
-        "How exact are transients in time of two masses on a shaft?",
-        f"With {finest[0]['steps a period']} steps a period torques are exact to "
-        f"{percent_text(worst / 100.0)} of rated over three periods; a brake winds the shaft to "
-        f"{wound.value:.2f} of rated.",
+        "How accurate are torques of two masses on a shaft after generator loss or braking?",
+        f"With {finest[0]['steps a period']} steps a period shaft torques err by at most "
+        f"{value_text(by[AVERAGE.name], '%')} of rated torque; braking winds the shaft up to "
+        f"{wound.value:.2f} times rated torque.",
         [
             *(
                 page.value(
@@ -94,6 +102,10 @@ def answer(page: Page, last: Rated, finest: list[Record]) -> None:
             ),
         ],
         BRAKED.format(last.letter),
+        [
+            f"Errors are the largest over three periods by {AVERAGE.name}"
+            + (f"; they are {', '.join(others)}." if others else ".")
+        ],
     )
     page.say(
         "The brake step winds the shaft up to twice its mean, and where the disc stands it holds "

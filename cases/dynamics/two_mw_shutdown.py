@@ -169,35 +169,41 @@ def answer(
     names = list(meshes)
     ring, fast = (meshes[name] for name in (names[1], names[-1]))
     most = max(meshes.values(), key=lambda one: one.ratio)
-    rises = fast.ratio >= most.ratio
+    ends = f"at the high-speed stage {fast.ratio:.2f} times"
+    if fast.ratio >= most.ratio:
+        ends = "most at the high-speed stage"
+    label, other = most.name, most
+    if most is ring or most is fast:
+        label, other = "ring and planet", ring
     page.answer(
         "Does a shutdown load gears and bearings of a 2 MW machine as the thesis states?",
-        f"{good} of {tested} statements hold: a shutdown loads meshes up to {most.ratio:.2f} times "
-        f"normal operation, {'most' if rises else 'not most'} at the fast stage.",
+        f"{good} of {tested} statements hold: in a shutdown mesh forces reach {most.ratio:.2f} "
+        f"times those of normal operation, {ends}.",
         [
             page.value(
-                f"largest mesh force, {label}: shutdown over normal",
+                f"largest mesh force, {label}: shutdown over normal operation",
                 of.ratio,
                 of.band + level_band(of.name, moved),
                 beside=MORE[of.name],
                 by="thesis",
             )
-            for label, of in (("ring and planet", ring), ("fast stage", fast))
+            for label, of in ((label, other), ("high-speed stage", fast))
         ]
         + [
             page.value(
-                "least force of the fast mesh in the shutdown, over rated", fast.least / fast.rated
+                "lowest force of the high-speed mesh in the shutdown, over rated",
+                fast.least / fast.rated,
             ),
             page.value("statements of the thesis that hold", good),
             *damage_figures(page, shares),
         ],
         hero=FORCES,
         cautions=[
-            "Torque records, brake, bearings, pins, modules and faces are not printed: see what "
-            "each guess moves.",
-            f"The brake is sized so that the fast shaft reaches the printed {PEAK} of rated "
+            "Torque records, brake, bearings, pins, modules and face widths are not printed but "
+            "assumed; a table shows what each assumption changes.",
+            f"The brake is sized so that the high-speed shaft reaches the printed {PEAK} of rated "
             "torque; its instant within a swing changes all ratios.",
-            "Planets stand at one azimuth: loads that turn with the carrier are left out.",
+            "The carrier stands at one azimuth: loads that turn with it are left out.",
         ],
         claim="holds in part" if 0 < good < tested else "holds" if good else "does not hold",
     )
@@ -226,8 +232,8 @@ def own_answer(page: Page, meshes: Mapping[str, Change], bearings: Mapping[str, 
     back = min(meshes.values(), key=lambda one: one.least / one.rated)
     page.answer(
         "How much more do gears and bearings carry in a shutdown than in normal operation?",
-        f"{mesh.name} carries {mesh.ratio:.2f} times as much, and {bearing.name} "
-        f"{bearing.ratio:.2f} times.",
+        f"In a shutdown {mesh.name} carries {mesh.ratio:.2f} times as much as in normal operation, "
+        f"and {bearing.name} {bearing.ratio:.2f} times.",
         [
             page.value(f"{mesh.name}: shutdown over normal", mesh.ratio, mesh.band),
             page.value(f"{bearing.name}: shutdown over normal", bearing.ratio, bearing.band),

@@ -390,11 +390,11 @@ def answer(
     both = f"give {together.best:.2f}, at most {together.most:.2f}"
     if reach:
         words = reach[0].capitalize()
-        verdict = f"{words} can give {wanted} alone; all guesses together {both}."
+        verdict = f"{words} alone can explain {wanted}; all causes together {both}."
     else:
-        none = f"None of {together.count} guesses alone gives {wanted} within its range"
+        none = f"None of {together.count} possible causes alone explains the ratio {wanted}"
         verdict = f"{none}; together they {both}"
-        verdict += "; pins held at the upwind cheek alone would." if held else "."
+        verdict += "; pins held only at the upwind cheek would." if held else "."
     what = "makes a planet's upwind bearing carry"
     page.answer(
         f"What {what} more than its downwind one?"
@@ -404,8 +404,8 @@ def answer(
         key_figures(page, effects, together, "asked for" if chosen.own else "thesis, least"),
         HERO,
         [
-            "Carrier, clearances, fits and tolerances are not public: each range is a guess with "
-            "its reason in the table."
+            "Carrier, clearances, fits and tolerances are not public: the range of each cause is "
+            "assumed, with its reason in the table."
         ],
         claim="" if chosen.own else "holds in part",
     )
@@ -420,20 +420,26 @@ def key_figures(
     band = max(together.best - low, high - together.best)
     title = "upwind over downwind, best guess of all"
     page.found(title, together.best, band)
-    reached = f"guesses over their ranges that reach {together.wanted:g} [%]"
+    reached = f"random combinations of causes that reach {together.wanted:g} [%]"
     found = [
-        page.value(title, together.best, band, beside=together.wanted, by=whose),
-        page.value("all guesses at the ends that raise it", together.most),
-        page.value("carrier alone, most", max(by["carrier"].alone)),
+        page.value(
+            "upwind over downwind load, best guess of all causes",
+            together.best,
+            band,
+            beside=together.wanted,
+            by=whose,
+        ),
+        page.value("the same, every cause at the end of its range that raises it", together.most),
+        page.value("the same, the carrier alone at its softest", max(by["carrier"].alone)),
         page.value(reached, 100 * together.share, 100 * together.share_band),
     ]
     held, tilt = by["overhung"].needed_beside, by["pin_tilt"].needed_beside
     if held is not None:
-        name = "needed: tilt stiffness of pins held at the upwind cheek [MN m/rad]"
+        name = "tilt stiffness that pins held at the upwind cheek need [MN m/rad]"
         found.append(page.value(name, 1e-6 / held))
     if tilt is not None:
         limit = 1e3 * by["pin_tilt"].cause.high
-        name = "needed: tilt of all pins [mrad]"
+        name = "tilt that all pins need [mrad]"
         found.append(page.value(name, 1e3 * tilt, beside=limit, by="tolerance"))
     return found
 

@@ -123,14 +123,14 @@ def answer(page: Page, result: WhirlResult) -> None:
             name = f"first critical speed of {shaft.name} that unbalance excites [rpm]"
             figures.append(page.value(name, shaft.first.speed / RPM))
     if np.isfinite(nearest.margin):
-        name = f"least margin of a critical speed to operation, {nearest.name} [%]"
+        name = f"smallest margin of operation to a critical speed, {nearest.name} [%]"
         margin = 100.0 * nearest.margin
         figures.append(page.value(name, margin, at_least=10.0, by="margin asked for"))
     if main.in_drivetrain is not None and main.first is not None:
         apart = 100.0 * abs(main.in_drivetrain / main.first.speed - 1)
-        name = f"difference of {main.name} by itself from the whole drivetrain [%]"
+        name = f"change of the critical speed of {main.name} in the whole drivetrain [%]"
         figures.append(page.value(name, apart))
-    figures.append(page.value("shafts that whirl", len(result.shafts)))
+    figures.append(page.value("shafts computed", len(result.shafts)))
     page.answer(
         result.answer.question,
         result.answer.verdict,

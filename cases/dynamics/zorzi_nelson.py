@@ -250,25 +250,25 @@ def answer(page: Page, speeds: Floats, limits: list[float], found: list[Level]) 
     few = min(one.elements for one in found if one.theory == "timoshenko" and one.error < 1e-3)
     page.answer(
         "Where does a shaft with internal damping lose its stability?",
-        f"Internal damping makes whirl grow from {formatted(limits[0], 4)}\u00a0rpm on, the first "
-        "forward critical speed, as published.",
+        f"Internal damping makes the shaft unstable above {formatted(limits[0], 4)}\u00a0rpm, its "
+        "first forward critical speed, as published.",
         [
             page.judged("forward critical speed 1", "forward critical speed 1", "published"),
             page.judged("forward critical speed 2", "forward critical speed 2", "published"),
             page.judged(
                 "speed from which whirl grows, internal viscous damping",
-                "whirl grows from, viscous damping",
+                "limit of stability, viscous damping",
                 "published",
             ),
-            page.value("whirl grows from, hysteresis [rpm]", limits[1]),
+            page.value("limit of stability, hysteretic damping [rpm]", limits[1]),
             page.value(
                 "first critical speed of a rigid shaft [rpm]",
                 rigid[0].speed / RPM,
                 beside=float(speeds[0]),
                 by="shaft that bends",
             ),
-            page.value("elements of an error of the critical speed below 0.1 %", few),
+            page.value("elements needed for an error of the critical speed below 0.1 %", few),
         ],
         hero=HERO,
-        cautions=["Bearings without damping: any of theirs raises the limit."],
+        cautions=["Bearings have no damping here: any damping of theirs raises the limit."],
     )

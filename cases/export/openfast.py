@@ -80,13 +80,27 @@ def run(run: Run, page: Page) -> None:
 
 def answer(page: Page, torsion: elastodyn.Torsion, others: int) -> None:
     """State the torsion that openfast_io reads; `others` is how many other values changed."""
-    spring = page.judged("DTTorSpr of the uniform shaft", by="G J / L", unit="MN m/rad")
-    damper = page.value("DTTorDmp, 5 % of critical [kN m s/rad]", torsion.damper / 1e3)
+    spring = page.judged(
+        "DTTorSpr of the uniform shaft",
+        "torsional stiffness DTTorSpr of the uniform shaft",
+        "G J / L",
+        unit="MN m/rad",
+    )
+    damper = page.value(
+        "torsional damping DTTorDmp, 5 % of critical [kN m s/rad]", torsion.damper / 1e3
+    )
     figures = [
         spring,
         damper,
-        page.judged(NREL_DAMPER, "damper of the NREL 5 MW turbine", "Jonkman", unit="MN m s/rad"),
-        page.judged("SubDyn spring of 3947.8 N/m with 100 kg: sag", by="r-test", unit="mm"),
+        page.judged(
+            NREL_DAMPER, "torsional damping of the NREL 5 MW turbine", "Jonkman", unit="MN m s/rad"
+        ),
+        page.judged(
+            "SubDyn spring of 3947.8 N/m with 100 kg: sag",
+            "sag of 100 kg on a SubDyn spring of 3947.8 N/m",
+            "r-test",
+            unit="mm",
+        ),
         page.judged(
             "ExtPtfm: lowest elastic frequency of the free shaft",
             "lowest frequency of the shaft, ExtPtfm",
@@ -95,13 +109,15 @@ def answer(page: Page, torsion: elastodyn.Torsion, others: int) -> None:
     ]
     left = "nothing else" if others == 0 else f"{others} other values"
     page.answer(
-        "Which drivetrain torsion goes into OpenFAST, and is it read as it was written?",
-        f"openfast_io reads {certain_value(spring)} and "
-        f"{value_text(damper.value, damper.unit)} from the ElastoDyn input, in which {left} "
-        "changed; OpenFAST itself is not run.",
+        "Which drivetrain stiffness and damping go into OpenFAST, and are they read as written?",
+        f"openfast_io reads back a torsional stiffness of {certain_value(spring)} and damping of "
+        f"{value_text(damper.value, damper.unit)} from the ElastoDyn input; {left} in it changed.",
         figures,
         hero=FROM_REFERENCES,
-        cautions=["The turbine of the ElastoDyn input is made up."],
+        cautions=[
+            "OpenFAST itself is not run.",
+            "The turbine of the ElastoDyn input is fictitious.",
+        ],
     )
     page.errors(FROM_REFERENCES, figures)
 

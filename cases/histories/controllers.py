@@ -275,18 +275,18 @@ def answer(page: Page, changes: dict[str, Record], agreed: Sequence[str], histor
     claim: Claim = "holds in part" if clear else "does not hold" if refuted else ""
     agreement = f"{clear} of the thesis's {len(agreed)} statements hold beyond scatter"
     if not clear:
-        agreement = f"the thesis's {len(agreed)} statements do not stand out of scatter"
+        agreement = f"the thesis's {len(agreed)} statements are not confirmed beyond scatter"
     page.answer(
         "Does a controller tuned twice as fast relieve the main bearing, as the thesis says?",
-        f"Tuning changes the speed's spread by {percent(speed)} and the bearing moment's by "
-        f"{percent(moment)}; {agreement}.",
+        f"Faster tuning changes the spread of rotor speed by {percent(speed)}, of the bearing "
+        f"moment by {percent(moment)}; {agreement}.",
         [speed, moment, *(f for f in figures if f not in (speed, moment))][:6],
         hero=CHANGES,
         cautions=[
             f"{histories} {'histories' if histories > 1 else 'history'} of each controller: a "
-            "change within two standard errors may be the seeds' alone.",
-            "The thesis prints neither its controllers nor a number, so that directions alone can "
-            "be compared.",
+            "change within two standard errors may come from the random wind alone.",
+            "The thesis prints neither its controllers nor a number, so that only the direction of "
+            "changes can be compared. Spread is the standard deviation.",
         ],
         claim="holds" if clear == len(agreed) else claim,
     )

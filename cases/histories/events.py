@@ -102,21 +102,24 @@ def answer(page: Page, lost: ConvergenceInTime, of: ComputedStop, rows: list[Rec
     )
     page.answer(
         "Does a computed shutdown have the torque cycles that the thesis counted?",
-        f"{met} of {len(tested)} statements that can be tested hold: the slow shaft's torque "
-        f"ranges {formatted(ratio, 3)} times as far as in normal operation.",
+        f"{met} of {len(tested)} testable statements hold: in a shutdown the low-speed shaft's "
+        f"torque range is {formatted(ratio, 3)} times that of normal operation.",
         [
             page.value(
-                "slow shaft: largest range, shutdown over normal", ratio, beside=8.0, by="thesis"
+                "low-speed shaft: largest torque range, shutdown over normal operation",
+                ratio,
+                beside=8.0,
+                by="thesis",
             ),
             page.value(
-                "fast shaft: largest range in the shutdown [kN m]",
+                "high-speed shaft: largest torque range in the shutdown [kN m]",
                 largest_range(of.counts["fast", STATES[1]]),
                 of.bands["fast"],
                 beside=19.0,
                 by="thesis",
             ),
             page.value(
-                "fast shaft: equivalent load, shutdown over normal",
+                "high-speed shaft: equivalent torque, shutdown over normal operation",
                 of.ratio("fast", equivalent),
                 beside=3.65,
                 by="thesis",
@@ -128,8 +131,10 @@ def answer(page: Page, lost: ConvergenceInTime, of: ComputedStop, rows: list[Rec
         cautions=[
             "The brake is sized to a printed peak, and the wind is simulated: measured records are "
             "private.",
-            "Made events are drawn to the thesis's ratios: they are no evidence for them.",
-            "The thesis says nothing of grid loss, which is that of two masses on a shaft.",
+            "Synthetic events below are made to have the thesis's ratios: they are no evidence for "
+            "them.",
+            "The thesis says nothing of grid loss, which is computed here with two masses on a "
+            "shaft.",
         ],
         claim="holds" if met == len(tested) else "holds in part" if met else "does not hold",
     )

@@ -57,20 +57,22 @@ def answer(page: Page, sampled: list[Record], spoilt: list[Record], change: floa
     largest = max(float(row[SIZE]) for row in spoilt)
     shallow, steep = (float(row[SPOILT]) for row in spoilt if row[SIZE] == largest)
     page.answer(
-        "What do slow sampling, a spike or an open end do to counted loads?",
-        f"With {samples:.3g} samples a period 6P appears at {seen:.2g}\u00a0Hz, not "
-        f"{SIX:.2g}\u00a0Hz; one spike of {largest:.3g} deviations makes an equivalent load "
-        f"{steep:.2g} times too large.",
+        "What do slow sampling and a spike in the data do to counted loads?",
+        f"A {SIX:.2g}\u00a0Hz line sampled {samples:.3g} times a period appears at "
+        f"{seen:.2g}\u00a0Hz; one spike of {largest:.3g} standard deviations makes an equivalent "
+        f"load {steep:.2g} times too large.",
         [
-            page.value("6P appears at [Hz]", seen, beside=SIX, by="truth"),
-            page.value(f"equivalent load with a spike over the clean one, {STEEP}", steep),
+            page.value(
+                "frequency at which the line of 6P appears [Hz]", seen, beside=SIX, by="true"
+            ),
+            page.value(f"equivalent load with a spike over that without, {STEEP}", steep),
             page.value("the same, m = 3", shallow),
-            page.value("closed residue over half cycles, 600 s, m = 10 [%]", change),
+            page.value("change by closing cycles open at the end, 600 s, m = 10 [%]", change),
         ],
         hero=FOLDED,
         cautions=[
-            "A value that is no number and time that steps back are refused with their place, and "
-            "where reactions are asked for a gap, too; all else is counted as it stands."
+            "Missing numbers and time that runs backwards are reported as errors with their place, "
+            "and gaps where reactions are asked for; all else is counted as it stands."
         ],
     )
 

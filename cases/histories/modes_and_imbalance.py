@@ -10,7 +10,7 @@ from fe_drivetrain.cases.references.rotor_imbalance import GRADE
 from fe_drivetrain.common import Floats
 from fe_drivetrain.common.typeset import MINUS
 from fe_drivetrain.report import chart, mark_events, trace
-from fe_drivetrain.report.number_text import certain_value
+from fe_drivetrain.report.number_text import certain_value, value_text
 from fe_drivetrain.report.suite import Page, Record, Run
 from fe_drivetrain.turbine_loads.histories import MULTIPLES, Spectrum, multiples, spectrum
 from fe_drivetrain.turbine_loads.hub_loads import (
@@ -79,26 +79,26 @@ def answer(page: Page, rigid: Record, spoilt: Record, seeds: int) -> None:
     below, above = (
         page.judged(
             f"peak of the side force one turn {side} the edge mode",
-            f"edge mode in the side force, one turn {side} it",
+            f"edgewise mode in the side force, 1P {side} its own frequency",
             "closed form",
         )
         for side in ("below", "above")
     )
     page.answer(
-        "Which lines do imbalance and blade modes put into hub loads?",
-        f"Imbalance and one mispitched blade raise 1P of the side force from {before:.2g} to "
-        f"{after:.2g}\u00a0kN; edge modes appear at {certain_value(below)} and "
-        f"{certain_value(above)}.",
+        "At which frequencies do imbalance and blade modes appear in hub loads?",
+        "Mass imbalance and one mispitched blade raise the side force at 1P from "
+        f"{value_text(before)} to {value_text(after, 'kN')}; the edgewise blade mode appears at "
+        f"{certain_value(below)} and {certain_value(above)}.",
         [
-            page.value("1P of the side force [kN]", after, beside=before, by="balanced, rigid"),
+            page.value("side force at 1P [kN]", after, beside=before, by="balanced, rigid"),
             page.judged(
                 f"1P of Fy from a mass imbalance of {GRADE:.0f} kg m",
-                "1P of the side force by mass imbalance alone",
+                "side force at 1P by mass imbalance alone",
                 "m r w²",
             ),
             page.judged(
                 f"1P of Mx from a mass imbalance of {GRADE:.0f} kg m",
-                "1P of the torque by mass imbalance alone",
+                "torque at 1P by mass imbalance alone",
                 "closed form",
             ),
             below,
@@ -106,15 +106,16 @@ def answer(page: Page, rigid: Record, spoilt: Record, seeds: int) -> None:
         ],
         hero=spectrum_of(1),
         cautions=[
-            f"One wind of {WIND:g} m/s, {seeds} {'seeds' if seeds > 1 else 'seed'}; a mode shows "
-            "one turn below and above its own frequency, as a frame that stands sees it."
+            f"One wind speed, {WIND:g} m/s, and {seeds} {'seeds' if seeds > 1 else 'seed'}; in the "
+            "fixed frame a mode of the blades appears 1P below and above its own frequency."
         ],
     )
 
 
 def spectrum_of(component: int) -> str:
     """Caption of the spectrum of a component."""
-    return f"Spectrum of {COMPONENTS[component]}, with what may move added one by one"
+    added = "as tower shadow, modes and imbalance are added one by one"
+    return f"Spectrum of {COMPONENTS[component]} {added}"
 
 
 def mean_of(values: list[Floats]) -> Floats:

@@ -152,7 +152,7 @@ IN_WORDS = {
     "My, Mz, bending": "bending moment",
     "loops": "load loops",
 }
-BEYOND = "Quantities of OpenFAST that a surrogate's seeds do not reach, by load"
+BEYOND = "Quantities of OpenFAST outside a surrogate's scatter by seed, by load"
 
 
 def answer(
@@ -169,12 +169,15 @@ def answer(
         key=lambda family: sum(int(c[family]) for c in counts if c["model"] == ALL),
     )
     page.answer(
-        "How near are the surrogate's hub loads to those of OpenFAST?",
-        f"Of OpenFAST's quantities {before:.0f}\u00a0% are beyond the default surrogate's seeds, "
-        f"{after:.0f}\u00a0% with all modes and tower shadow, most in {IN_WORDS[most]}.",
+        "How close are the surrogate's hub loads to those of OpenFAST?",
+        f"Of OpenFAST's load quantities {before:.0f}\u00a0% lie outside the default surrogate's "
+        f"scatter, {after:.0f}\u00a0% with all modes and tower shadow, most in {IN_WORDS[most]}.",
         [
             page.value(
-                "quantities beyond all modes' seeds [%]", after, beside=before, by="default"
+                "quantities outside the scatter, all modes and tower shadow [%]",
+                after,
+                beside=before,
+                by="default surrogate",
             ),
             *(over_openfast(page, rows, name, *named) for named in ASKED_FOR.items()),
             page.judged(
@@ -185,9 +188,10 @@ def answer(
         ],
         hero=BEYOND,
         cautions=[
-            f"{seeds} seeds: a model that scatters less has more beyond its scatter at an equal "
-            "error.",
-            "Aerofoils, chord and twist are those of the default rotor, and nothing was fitted.",
+            f"Scatter is that of {seeds} seeds: of two models with equal errors, the one that "
+            "scatters less has more quantities outside.",
+            "Aerofoils, chord and twist are those of the default rotor; nothing was fitted to "
+            "OpenFAST.",
         ],
     )
 

@@ -128,32 +128,32 @@ def answer(page: Page, rows: list[Record], enough: list[Record], finest: int) ->
     points, spread, damage = "points over the diameter", "My, error of rms [%]", DAMAGE
     first, last = rows[0], rows[-1]
     found = (
-        f"{float(enough[0][points]):.2g} points over the rotor's diameter keep"
+        f"{float(enough[0][points]):.2g} wind points over the rotor's diameter give"
         if enough
-        else f"Not even {float(last[points]):.2g} points over the rotor's diameter keep"
+        else f"Not even {float(last[points]):.2g} wind points over the rotor's diameter give"
     )
     page.answer(
-        "How fine a grid of wind do hub loads need?",
-        f"{found} the equivalent load of My within {100 * ENOUGH:g}\u00a0%; with "
-        f"{float(first[points]):.2g} it errs by {float(first[damage]):.2g}\u00a0%.",
+        "How fine must a wind grid be for hub loads?",
+        f"{found} the equivalent tilt moment My within {100 * ENOUGH:g}\u00a0%; "
+        f"{float(first[points]):.2g} points give an error of {float(first[damage]):.2g}\u00a0%.",
         [
             page.value(
-                f"equivalent load of My, error with {last[points]:.2g} points [%]",
+                f"error of the equivalent tilt moment My, {last[points]:.2g} points [%]",
                 last[damage],
                 at_most=100.0 * ENOUGH,
             ),
             *(
-                page.value(f"{what}, error with {row[points]:.2g} points [%]", row[key])
+                page.value(f"{what}, {row[points]:.2g} points [%]", row[key])
                 for what, key, row in (
-                    ("equivalent load of My", damage, first),
-                    ("My in time, rms", spread, first),
-                    ("My in time, rms", spread, last),
+                    ("error of the equivalent tilt moment My", damage, first),
+                    ("rms error of My over time", spread, first),
+                    ("rms error of My over time", spread, last),
                 )
             ),
         ],
         hero=ERROR_BY_GRID,
         cautions=[
-            f"Errors are those against {finest} x {finest} points, not against the wind itself.",
+            f"Errors are those against {finest} × {finest} points, not against the true wind.",
             "Files of TurbSim and HAWC2 add less than a thousandth of the largest load's spread.",
         ],
     )

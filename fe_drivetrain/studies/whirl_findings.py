@@ -293,6 +293,7 @@ def _verdict(shafts: Sequence[ShaftWhirl]) -> str:
         )
     at = formatted(nearest.first.speed * RPM, 4)
     return (
-        f"No critical speed is in operation; the nearest that unbalance excites is {nearest.name}, "
-        f"{at}\u00a0rpm, {formatted(nearest.first.speed / nearest.range[1], 2)} times its largest."
+        f"Unbalance excites no critical speed in the operating range: the nearest, {at}\u00a0rpm "
+        f"of {nearest.name}, is {formatted(nearest.first.speed / nearest.range[1], 2)} times its "
+        "highest operating speed."
     )
