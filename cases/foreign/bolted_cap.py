@@ -89,22 +89,25 @@ def answer(page: Page, more: dict[int, Floats]) -> None:
     narrow, wide = min(more), max(more)
     page.answer(
         "How much softer is a housing whose cap is bolted than one that is glued?",
-        f"With {narrow}\u00a0mm pressed round each bolt it tilts {more[narrow][4]:.2g}\u00a0% more "
-        f"than glued, with {wide}\u00a0mm {more[wide][4]:.2g}\u00a0%: a glued joint is too stiff.",
+        f"The bolted housing tilts {more[narrow][4]:.2g}\u00a0% more than the glued one if its "
+        f"joint is pressed {narrow}\u00a0mm wide round each bolt, {more[wide][4]:.2g}\u00a0% more "
+        f"if {wide}\u00a0mm wide.",
         [
             page.judged(
                 f"more tilt about y where bolts press {narrow} mm than glued",
                 f"more tilt than glued, {narrow} mm pressed",
             ),
             page.value(f"more tilt than glued, {wide} mm pressed [%]", more[wide][4]),
-            page.value(f"gives more along z, {narrow} mm pressed [%]", more[narrow][2]),
-            page.judged(f"{GLUED}: compliance about y", "glued: about y", "one solid"),
-            page.judged(f"{GLUED}: compliance along z", "glued: along z", "one solid"),
+            page.value(
+                f"more displacement along z than glued, {narrow} mm pressed [%]", more[narrow][2]
+            ),
+            page.judged(f"{GLUED}: compliance about y", "compliance about y, glued", "one solid"),
+            page.judged(f"{GLUED}: compliance along z", "compliance along z, glued", "one solid"),
         ],
         hero=MORE,
         cautions=[
-            "The joint is linear, and gives as much pushed as pulled: the truth of a preloaded one "
-            "lies between bolted and glued."
+            "The joint is linear, as soft when it is pushed as when it is pulled: a real preloaded "
+            "joint lies between bolted and glued."
         ],
     )
 

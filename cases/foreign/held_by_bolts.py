@@ -84,22 +84,23 @@ def answer(page: Page, name: str, tilts: list[float]) -> None:
     """State the tilt [arcmin] of a housing by how it is held, in the order of `WAYS`."""
     foot, washers, beams = tilts
     page.answer(
-        "How much does it matter how the bolts of a housing are held?",
-        f"The {name} tilts {foot:.3g} minutes of arc on its whole foot, {washers:.3g} on washers "
-        f"and {beams:.3g} on bolts alone: the hold decides.",
+        "How much does it matter how the bolts of a housing are modelled?",
+        f"Under 1\u00a0MN\u00a0m the {name} tilts {foot:.3g}\u00a0arcmin with its whole foot "
+        f"fixed, {washers:.3g}\u00a0arcmin with only its washers fixed and {beams:.3g}\u00a0arcmin "
+        "on bolts alone.",
         [
-            page.judged(f"{name}: tilt under 1 MN m, washers held", "tilt, washers held"),
-            page.value("tilt, whole foot held [arcmin]", foot),
-            page.value("tilt, bolts as beams [arcmin]", beams),
-            page.value("washers over whole foot", washers / foot),
-            page.value("bolts as beams over whole foot", beams / foot),
+            page.judged(f"{name}: tilt under 1 MN m, washers held", "tilt, washers fixed"),
+            page.value("tilt, whole foot fixed [arcmin]", foot),
+            page.value("tilt, on bolts alone, as beams [arcmin]", beams),
+            page.value("tilt, washers over whole foot", washers / foot),
+            page.value("tilt, bolts alone over whole foot", beams / foot),
             page.judged(
                 "rigid housing on its bolts: K about y", "rigid housing, K about y", "beams"
             ),
         ],
         hero=TILT,
         cautions=[
-            "Neither washers nor bolts as beams let the ground press on the foot between the bolts."
+            "On washers or bolts alone, the ground does not press on the foot between the bolts."
         ],
     )
 

@@ -155,9 +155,9 @@ def answer(page: Page, rows: list[Record], by_mesh: float) -> None:
     inside = max(off, splines) <= by_mesh
     page.answer(
         "Is a housing that is read back from a file as stiff as the one that was written?",
-        f"{'Yes' if inside else 'No'}: from STEP within {off:.2g} %, as splines within "
-        f"{splines:.2g} %, {'less' if inside else 'more'} than the errors of both meshes, "
-        f"{by_mesh:.2g} %; from mesh files to round-off.",
+        f"{'Yes' if inside else 'No'}: read back from STEP, its stiffness differs by "
+        f"{off:.2g}\u00a0%, as splines by {splines:.2g}\u00a0%, {'less' if inside else 'more'} "
+        f"than the error of the meshes, {by_mesh:.2g}\u00a0%.",
         [
             page.value("largest difference, STEP [%]", off, at_most=by_mesh, by="both meshes"),
             page.value("largest difference, all faces splines [%]", splines, at_most=by_mesh),
@@ -167,7 +167,7 @@ def answer(page: Page, rows: list[Record], by_mesh: float) -> None:
         ],
         hero=READ_BACK,
         cautions=[
-            "From STEP the bearing is tied to the housing, where it shared its nodes before."
+            "After STEP the bearing is tied to the housing; before, it shared the housing's nodes."
         ],
     )
     page.errors(READ_BACK, [*step, *by_splines])

@@ -66,10 +66,10 @@ def levels(scene: Scene, ground: Scene) -> dict[str, LevelModel]:
     stiff, soft = (housing_springs(scene, way)[0] for way in ("rigid", "averaged"))
     fixed = {name: unit_stiffness(ground, name, "rigid") for name in UNITS}
     return {
-        "coupled, faces in shape": shaft_level(scene, 2, stiff),
-        "coupled, faces on average": shaft_level(scene, 2, soft),
-        "each by itself": shaft_level(ground, 2, alone(stiff)),
-        "on the ground": shaft_level(ground, 2, fixed),
+        "coupled, rigid faces": shaft_level(scene, 2, stiff),
+        "coupled, averaged faces": shaft_level(scene, 2, soft),
+        "not coupled": shaft_level(ground, 2, alone(stiff)),
+        "rigid ground": shaft_level(ground, 2, fixed),
     }
 
 
@@ -77,8 +77,8 @@ def check(page: Page, found: dict[str, LevelModel], solid: Response) -> None:
     """The assembly of solids lies between both ways to couple, and is in balance."""
     for load in LOADS:
         unit = "-" if load[0] == "F" else "1/m"
-        low, high = sorted(share(found[f"coupled, faces {w}"].reaction_matrices, load)
-                           for w in ("in shape", "on average"))  # fmt: skip
+        low, high = sorted(share(found[f"coupled, {w} faces"].reaction_matrices, load)
+                           for w in ("rigid", "averaged"))  # fmt: skip
         page.equals(
             f"force on the rear bearing for {load} at the hub, coupled [{unit}]",
             (low + high) / 2,
@@ -100,13 +100,13 @@ def check(page: Page, found: dict[str, LevelModel], solid: Response) -> None:
 def answer(page: Page, on_rear: dict[str, float]) -> None:
     """State the force on the rear bearing [kN] under a pitching moment of 1 MN m, by supports."""
     solids, apart, ground = (
-        on_rear[name] for name in ("assembly of solids", "each by itself", "on the ground")
+        on_rear[name] for name in ("assembly of solids", "not coupled", "rigid ground")
     )
     page.answer(
         "How do two bearings on one bedplate share the loads of the hub?",
-        f"Of a pitching moment of 1\u00a0MN\u00a0m the rear bearing carries {solids:.3g}\u00a0kN; "
-        f"supports that are not coupled say {apart:.3g}\u00a0kN, a rigid ground "
-        f"{ground:.3g}\u00a0kN.",
+        f"Under a pitching moment of 1\u00a0MN\u00a0m the rear bearing carries "
+        f"{solids:.3g}\u00a0kN; supports that are not coupled would give {apart:.3g}\u00a0kN, a "
+        f"rigid ground {ground:.3g}\u00a0kN.",
         [
             page.value("rear bearing, assembly of solids [kN]", solids),
             *(
@@ -115,7 +115,9 @@ def answer(page: Page, on_rear: dict[str, float]) -> None:
                 if name != "assembly of solids"
             ),
             page.judged(
-                "force on the rear bearing for Fz at the hub, coupled", "share of Fz", "solids"
+                "force on the rear bearing for Fz at the hub, coupled",
+                "rear bearing, share of a vertical hub force Fz",
+                "solids",
             ),
         ],
         hero=ON_REAR,

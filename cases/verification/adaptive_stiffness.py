@@ -132,7 +132,7 @@ def answer(page: Page, finest: rigid_ended_shafts.Solved, rates: Rates, exact: f
     """State what refinement by indicators gains over uniform meshes of as many unknowns."""
     k, better = finest.stiffness[LOAD], rates.error < rates.uniform_error
     page.answer(
-        "Does refining where the error is estimated beat uniform meshes at a sharp step?",
+        "Does refining where the estimated error is large beat uniform meshes at a sharp step?",
         f"{'Yes' if better else 'No'}: with {formatted(rates.unknowns)} unknowns the bending "
         f"stiffness errs by {rates.error:.2g} % on the refined mesh and by "
         f"{rates.uniform_error:.2g} % on a uniform one.",
@@ -143,8 +143,8 @@ def answer(page: Page, finest: rigid_ended_shafts.Solved, rates: Rates, exact: f
                 at_most=rates.uniform_error,
                 by="uniform mesh of as many",
             ),
-            page.value("power of the unknowns in the error, refined", rates.slope["adaptive"]),
-            page.value("power of the unknowns in the error, uniform", rates.slope["uniform"]),
+            page.value("exponent of error over unknowns, refined", rates.slope["adaptive"]),
+            page.value("exponent of error over unknowns, uniform", rates.slope["uniform"]),
             page.value(
                 "bending stiffness, last refined mesh [MN m/rad]",
                 k / 1e6,
@@ -154,7 +154,7 @@ def answer(page: Page, finest: rigid_ended_shafts.Solved, rates: Rates, exact: f
             ),
         ],
         hero=ERRORS,
-        cautions=["The sharp step is what holds uniform meshes back."],
+        cautions=["The gain is that at a sharp step, which slows uniform meshes down."],
     )
 
 

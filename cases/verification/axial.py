@@ -50,16 +50,17 @@ def answer(page: Page, finest: list[Record]) -> None:
     )
     page.answer(
         "How stiff is a uniform shaft in tension?",
-        f"The solid shaft has {certain_value(solid)} and the bored one {certain_value(bored)}, "
-        f"within {100 * max(column(finest, ERROR)):.1g} % of E A / L.",
+        f"The axial stiffness is {certain_value(solid)} for the solid shaft and "
+        f"{certain_value(bored)} for the bored one, both within "
+        f"{100 * max(column(finest, ERROR)):.1g}\u00a0% of E\u00a0A\u00a0/\u00a0L.",
         [
             solid,
             bored,
-            page.value("share of the stiffness that the bore takes [%]", 100 * BORE**2 / OUTER**2),
+            page.value("stiffness that is lost to the bore [%]", 100 * BORE**2 / OUTER**2),
             page.value("stress in both, uniform [MPa]", SIGMA / 1e6),
         ],
         hero=ERRORS,
-        cautions=["The ends are free to contract; ends that are held make a shaft stiffer."],
+        cautions=["The ends are free to contract sideways; clamped ends make a shaft stiffer."],
     )
 
 

@@ -57,7 +57,7 @@ RESERVE = 1.8
 ORDER = 6
 #: Shafts without fillets that an independent program solves, too, hub and gearbox kept.
 INDEPENDENT, QUICK_INDEPENDENT = (2, 8, 1, 3, 13, 14), (2,)
-HISTOGRAM = "Histogram of bands over errors: below 1 a band does not hold"
+HISTOGRAM = "Histogram of bands over true errors: below 1 a band is too small"
 MERIDIAN, SOLID, ONE_FILLET = "2, meridian", "3, solid", "2, one fillet"
 
 Solve = Callable[[Scene], tuple[Condensed, StiffnessBands]]
@@ -250,17 +250,23 @@ def answer(page: Page, rows: list[Record], quick: bool) -> None:
         share_that_holds(page, rows, quick),
         page.value("bands compared with much finer models", len(rows)),
         page.value("median band over error", median, at_most=WIDE),
-        page.judged("level 2, one fillet: least band over error", "least, shafts with one fillet"),
+        page.judged(
+            "level 2, one fillet: least band over error", "least band over error, one fillet"
+        ),
     ]
     alone = "level 2: share of bands that hold against NGSolve"
     if any(one.quantity == alone for one in page.checks):
-        figures.append(page.judged(alone, "shafts whose bands hold", "NGSolve", unit="%"))
+        figures.append(
+            page.judged(
+                alone, "bands that contain the true value, against NGSolve", "NGSolve", unit="%"
+            )
+        )
     page.answer(
-        "How often do the bands of a shaft's stiffness hold?",
-        f"{words_of_share(rows, quick)}, at a median of {median:.2g} times the error.",
+        "How often do the uncertainty bands of a shaft's stiffness contain the true value?",
+        f"{words_of_share(rows, quick)}; the median band is {median:.2g} times the error.",
         figures,
         hero=HISTOGRAM,
-        cautions=["The reference errs, too: what may be missing from it counts against the band."],
+        cautions=["The finer model errs, too: its possible error counts against the band."],
     )
 
 

@@ -47,7 +47,7 @@ FINER, APART = (0.75, 0.55, 0.45, 0.4), 1.15
 #: Order of the reference: that of energy at a crack, where it converges most slowly.
 ORDER = 1.0
 
-HISTOGRAM = "Histogram of bands over errors: below 1 a band does not hold"
+HISTOGRAM = "Histogram of bands over true errors: below 1 a band is too small"
 BOTH = "bands of both values, relative"
 STIFFNESS, REACTION, CHANGE = "stiffness at the hub", "reaction", "change to a like design"
 
@@ -237,8 +237,9 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, rows: list[Record], count: int, quick: bool) -> None:
     """State the share of bands that hold, and how wide they are."""
     page.answer(
-        "How often do the bands of an assembly's stiffness and reactions hold?",
-        f"{words_of_share(rows, quick)}, of {count} random scene{'' if count == 1 else 's'}.",
+        "How often do the bands of an assembly's stiffness and reactions contain the true value?",
+        f"{words_of_share(rows, quick)} in {count} random "
+        f"{'assembly' if count == 1 else 'assemblies'}.",
         [
             share_that_holds(page, rows, quick),
             page.judged("median band over error, values", "median band over error"),
@@ -250,8 +251,8 @@ def answer(page: Page, rows: list[Record], count: int, quick: bool) -> None:
         ],
         hero=HISTOGRAM,
         cautions=[
-            "The reference errs, too: what may be missing from it counts against the band.",
-            f"Scenes of more than {formatted(MAX_CELLS)} elements are left out.",
+            "The finer model errs, too: its possible error counts against the band.",
+            f"Assemblies of more than {formatted(MAX_CELLS)} elements are left out.",
         ],
     )
 

@@ -33,7 +33,7 @@ def coverage(rows: list[Record]) -> Record:
 
 def share_that_holds(page: Page, rows: list[Record], quick: bool) -> KeyFigure:
     """Share of the bands that hold; a quick run has too few for the share that is required."""
-    name, share = "bands that hold [%]", 100 * float(np.mean(column(rows, HOLDS)))
+    name, share = "bands that contain the true value [%]", 100 * float(np.mean(column(rows, HOLDS)))
     if quick:
         return page.value(name, share)
     return page.value(name, share, at_least=100 * COVERED, by="asked for")
@@ -45,10 +45,11 @@ def words_of_share(rows: list[Record], quick: bool) -> str:
     share = 100 * hold / len(rows)
     judged = f"{asked} are asked for"
     if quick:
-        judged = f"too few to judge {asked} by"
+        judged = f"too few to confirm {asked}"
     elif share < 100 * COVERED:
         judged = f"not the {asked} that are asked for"
-    return f"{hold} of {len(rows)} bands hold ({formatted(share, 3)}\u00a0%: {judged})"
+    contain = f"{hold} of {len(rows)} uncertainty bands contain the true value"
+    return f"{contain} ({formatted(share, 3)}\u00a0%: {judged})"
 
 
 def histogram(kinds: Iterable[tuple[str, list[Record]]]) -> list[Any]:

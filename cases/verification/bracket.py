@@ -62,10 +62,10 @@ def answer(page: Page) -> None:
     page.answer(
         "Which stress does the fillet of a bent bracket carry?",
         f"The fillet carries {certain_value(peak)}, {certain_value(figures[-1])} times the leg's "
-        f"nominal stress and {error:.2g} % from an independent plane solution.",
+        f"nominal stress; an independent plane solution differs by {error:.2g}\u00a0%.",
         figures,
         hero="Solid bracket against the plane solution and beam theory",
-        cautions=["The bracket is in plane strain, as a wide one is in its middle."],
+        cautions=["The bracket is computed in plane strain, as in the middle of a wide bracket."],
     )
     page.errors("Solid bracket against the plane solution and beam theory", figures)
 

@@ -38,10 +38,10 @@ def answer(page: Page, missed: dict[str, float]) -> None:
     best, linear = missed[NAMES[27]], missed[NAMES[4]]
     title = "cantilever, hexahedra of 27 nodes: strain energy per width"
     page.answer(
-        "How much of a bent block's energy do different elements miss?",
-        f"Of eight elements through the height, hexahedra of 27 nodes miss "
-        f"{formatted(best, 2, '%')}\u00a0% of a cantilever's energy, linear tetrahedra "
-        f"{formatted(linear, 2, '%')}\u00a0%, and are that much too stiff.",
+        "How much of a bent block's strain energy do different finite elements miss?",
+        f"With eight elements through the height, hexahedra of 27 nodes miss "
+        f"{formatted(best, 2, '%')}\u00a0% of a cantilever's strain energy; linear tetrahedra miss "
+        f"{formatted(linear, 2, '%')}\u00a0%.",
         [
             *(
                 page.value(f"missed by {NAMES[n]} [%]", missed[NAMES[n]])
@@ -50,7 +50,10 @@ def answer(page: Page, missed: dict[str, float]) -> None:
             page.judged(title, "energy, hexahedra of 27 nodes", "closed form"),
         ],
         hero="Strain energy of the cantilever that is missed",
-        cautions=["Shear and pure bending alone are exact with every element of second order."],
+        cautions=[
+            "A mesh that misses energy is too stiff by the same share.",
+            "In shear alone and in pure bending every second-order element is exact.",
+        ],
     )
 
 

@@ -80,14 +80,13 @@ def answer(page: Page, error: float, share: float) -> None:
         for name in names
     ]
     page.answer(
-        "How far does a short cantilever bend when shear counts?",
-        f"Its tip moves by {certain_value(figures[0])}, {100 * share:.2g} % of it in shear; beams "
-        f"with Cowper's coefficient are within {100 * error:.1g} %, solid and bored.",
+        "How far does the tip of a short cantilever move when shear counts?",
+        f"The solid cantilever's tip moves by {certain_value(figures[0])}, "
+        f"{100 * share:.2g}\u00a0% of it by shear; beams with Cowper's shear coefficient agree "
+        f"within {100 * error:.1g}\u00a0%, solid or bored.",
         figures,
         hero="Deflections and shear coefficients against the closed forms",
-        cautions=[
-            "Both ends carry Saint-Venant's tractions; an end that is clamped flat is stiffer."
-        ],
+        cautions=["Both ends carry Saint-Venant's tractions; a flat clamped end makes it stiffer."],
     )
     page.errors("Deflections and shear coefficients against the closed forms", figures)
 

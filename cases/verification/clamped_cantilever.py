@@ -81,7 +81,7 @@ def answer(page: Page, ends: list[Record]) -> None:
     first, last = ends[0], ends[-1]
     solid = [
         page.value(
-            f"the same as a solid, {row[RATIO]:g} D [%]",
+            f"stiffer, length {row[RATIO]:g} D, solid elements [%]",
             row[HEXAHEDRA],
             beside=row[STIFFER],
             by="meridian",
@@ -91,18 +91,19 @@ def answer(page: Page, ends: list[Record]) -> None:
     ]
     page.answer(
         "How much stiffer is a cantilever with clamped ends than Timoshenko's beam?",
-        f"By {first[STIFFER]:.2g} % at L = {first[RATIO]:g} D and {last[STIFFER]:.2g} % at "
-        f"L = {last[RATIO]:g} D: the error falls as D / L.",
+        f"Clamping makes a cantilever of length {first[RATIO]:g}\u00a0D stiffer by "
+        f"{first[STIFFER]:.2g}\u00a0%, one of {last[RATIO]:g}\u00a0D by "
+        f"{last[STIFFER]:.2g}\u00a0%; for long shafts the difference falls as D\u00a0/\u00a0L.",
         [
             *(
                 page.value(f"stiffer, length {of[RATIO]:g} D [%]", of[STIFFER])
                 for of in (first, last)
             ),
             *solid[:2],
-            page.judged(POWER, "power of the length in it", "theory"),
+            page.judged(POWER, "exponent of the length, long shafts", "theory"),
         ],
         hero=STIFFNESS_BY_LENGTH,
-        cautions=["The difference is one of the boundary condition, and no error of the beam."],
+        cautions=["The clamped ends cause the difference: it is no error of the beam theory."],
     )
 
 

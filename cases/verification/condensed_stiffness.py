@@ -180,10 +180,10 @@ def answer(page: Page, rows: list[Record]) -> None:
     """State how many rigid motions a condensed free body has, and how clearly."""
     gap, six = max(column(rows, GAP)), all(row["zero modes"] == 6 for row in rows)
     page.answer(
-        "Does the condensed stiffness of a free body know its six rigid motions?",
+        "Does the condensed stiffness of a free body leave its six rigid motions free?",
         f"{'Yes' if six else 'No'}: the condensed shaft and quarter ring have "
-        f"{' and '.join(str(row['zero modes']) for row in rows)} motions without strain, their "
-        f"stiffness {formatted(gap, 1, '')} of the next or less.",
+        f"{' and '.join(str(row['zero modes']) for row in rows)} free motions, with at most "
+        f"{formatted(gap, 1, '')} of the stiffness of the softest elastic motion.",
         [
             *(
                 page.value(f"free motions, {row['body']}", row["zero modes"], beside=6, by="exact")
@@ -193,7 +193,7 @@ def answer(page: Page, rows: list[Record]) -> None:
             page.judged(TWIST, "torsional stiffness of the shaft", "GJ / L", unit="MN m/rad"),
         ],
         hero=EIGENVALUES,
-        cautions=["Both ends are rigid faces: bodies whose ends deform are not condensed so."],
+        cautions=["Both ends are rigid faces: bodies whose end faces deform are not covered."],
     )
 
 

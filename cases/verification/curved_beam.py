@@ -75,18 +75,32 @@ def answer(page: Page) -> None:
     straight = 6.0 * MOMENT / (OUTER - INNER) ** 2 / 1e6
     winkler = float(BAR.winkler(np.array(INNER), MOMENT)) / 1e6
     by_hook, by_beam = (100 * (of / EXACT[INSIDE] - 1) for of in (winkler, straight))
+    beam_off, hook_off = (
+        f"{abs(off):.2g}\u00a0% too {'low' if off < 0 else 'high'}" for off in (by_beam, by_hook)
+    )
     page.answer(
-        "Which stress does the inside of a thick curved bar, as of a hook, carry?",
-        f"It carries {certain_value(inside)}, and {certain_value(outside)} at its outside: a "
-        f"straight beam's formula errs by {by_beam:+.0f} % inside, Winkler's for hooks by "
-        f"{by_hook:+.1f} %.",
+        "Which hoop stress does the inside of a thick curved bar, such as a hook, carry?",
+        f"The inside carries {certain_value(inside)} and the outside {certain_value(outside)}; "
+        f"inside, a straight beam's formula is {beam_off}, Winkler's formula for hooks {hook_off}.",
         [
             inside,
             outside,
-            page.value("inside, straight beam [MPa]", straight, beside=EXACT[INSIDE], by="exact"),
-            page.value("inside, Winkler [MPa]", winkler, beside=EXACT[INSIDE], by="exact"),
+            page.value(
+                "hoop stress inside, straight-beam formula [MPa]",
+                straight,
+                beside=EXACT[INSIDE],
+                by="exact",
+            ),
+            page.value(
+                "hoop stress inside, Winkler's formula [MPa]",
+                winkler,
+                beside=EXACT[INSIDE],
+                by="exact",
+            ),
             page.judged(TURNED.removesuffix(" [mrad]"), "rotation of the ends", "exact"),
-            page.judged(PULLED.removesuffix(" [MPa]"), "inside, under an end force", "exact"),
+            page.judged(
+                PULLED.removesuffix(" [MPa]"), "hoop stress inside, under an end force", "exact"
+            ),
         ],
         hero=THROUGH_HEIGHT,
         cautions=["The ends carry the exact tractions: a clamp would disturb the stress near it."],

@@ -266,18 +266,24 @@ def every_step(page: Page) -> None:
 def answer(page: Page, rows: list[Record]) -> None:
     """State whether the printed solutions are met."""
     figures = [
-        page.judged(f"{name} of {one.name}", by="printed", printed=printed)
+        page.judged(f"{name} of {one.name}", f"{safety}, {one.name}", "printed", printed)
         for one in EXAMPLES
-        for name, printed in (("S_D", one.fatigue), ("S_F", one.static))
+        for name, safety, printed in (
+            ("S_D", "safety against fatigue S_D", one.fatigue),
+            ("S_F", "safety against yield S_F", one.static),
+        )
     ]
     good = all(figure.status == "good" for figure in figures)
     page.errors(ERRORS, figures)
     page.answer(
-        "Are sections of shafts rated as printed solutions of DIN 743 rate them?",
-        f"All {len(EXAMPLES)} examinations are {'' if good else 'not '}met to the last printed "
-        f"digit: shoulder S_D\u00a0{rows[0]['S_D']:.3f}, keyway {rows[1]['S_D']:.3f}, hole "
-        f"{rows[2]['S_D']:.3f}.",
+        "Are shaft sections rated as in printed solutions by DIN 743?",
+        f"The {len(EXAMPLES)} printed solutions are {'' if good else 'not all '}reproduced to the "
+        f"last digit: safety against fatigue is {rows[0]['S_D']:.3f} (shoulder), "
+        f"{rows[1]['S_D']:.3f} (keyway) and {rows[2]['S_D']:.3f} (hole).",
         figures,
         hero=ERRORS,
-        cautions=["DIN 743 was not read: both programs may share an error with this one."],
+        cautions=[
+            "The text of DIN 743 was not read: the sources of the solutions may share an error "
+            "with this program."
+        ],
     )

@@ -41,20 +41,21 @@ def answer(page: Page, rows: dict[str, dict[str, Record]], meshed: str) -> None:
     """State which solid shafts of 1 m the published stiffnesses are."""
     of_d, of_a, of_c = (rows[letter]["LSS"] for letter in "DAC")
     page.answer(
-        "Which shafts do the stiffnesses of the published gear tables imply?",
-        f"Solid and 1 m long, low-speed shafts would be {of_d[DIAMETER]:.2f} m (D), "
-        f"{of_c[DIAMETER]:.2f} m (C) and {of_a[DIAMETER]:.2f} m thick (A, B): rather a flange.",
+        "Which shaft diameters do the stiffnesses in the published gear tables imply?",
+        f"Solid low-speed shafts 1\u00a0m long would have diameters of {of_d[DIAMETER]:.2f}\u00a0m "
+        f"(750\u00a0kW), {of_c[DIAMETER]:.2f}\u00a0m (2\u00a0MW) and {of_a[DIAMETER]:.2f}\u00a0m "
+        "(3\u00a0MW); the last is rather a flange.",
         [
             *(
                 page.value(f"{name}: diameter at 1 m [m]", of[DIAMETER])
                 for name, of in (("D, 750 kW", of_d), ("C, 2 MW", of_c), ("A and B, 3 MW", of_a))
             ),
-            page.value("A over C: stiffness", of_a[STIFFNESS] / of_c[STIFFNESS]),
+            page.value("stiffness of A over that of C", of_a[STIFFNESS] / of_c[STIFFNESS]),
             page.value("A and B: shear stress at rated torque [MPa]", of_a[STRESS]),
             page.judged(meshed, "D: stiffness as a solid", "Al-Hamadani", unit="MN m/rad"),
         ],
         hero=DIAMETERS,
-        cautions=["The tables give stiffnesses alone: lengths and solid sections are chosen here."],
+        cautions=["The tables give only stiffnesses: lengths and solid sections are assumed here."],
     )
 
 

@@ -78,21 +78,26 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, worst: dict[str, float], shares: dict[str, float]) -> None:
     """State the energy that is stored, and what is missing; shares [%] of the spherical scene."""
     spherical, bonded = (
-        page.judged(f"{kind}: {STORED}", f"stored, {kind} scene", "half the work")
+        page.judged(f"{kind}: {STORED}", f"stored energy, {kind} bearing", "half the work")
         for kind in ("spherical", "bonded")
     )
     missing = max(worst.values())
     most = sorted(shares, key=lambda part: -shares[part])[:2]
     page.answer(
-        "Where does the work of the loads go?",
-        f"A working load stores {formatted(spherical.value, 4)}\u00a0J in the spherical scene and "
-        f"{formatted(bonded.value, 4)}\u00a0J in the bonded one: all of its work but for "
-        f"{formatted(missing, 1, '')} of it.",
+        "Is all the work of the loads found again as stored energy?",
+        f"A working load stores {formatted(spherical.value, 4)}\u00a0J with a spherical bearing "
+        f"and {formatted(bonded.value, 4)}\u00a0J with a bonded one; at most "
+        f"{formatted(missing, 1, '')} of its work is missing.",
         [
             spherical,
             bonded,
-            *(page.value(f"stored in {part}, spherical [%]", shares[part]) for part in most),
-            page.value("largest share that is not found again", missing, at_most=1e-9, by="solver"),
+            *(
+                page.value(f"stored in {part}, spherical bearing [%]", shares[part])
+                for part in most
+            ),
+            page.value(
+                "largest share of the work that is missing", missing, at_most=1e-9, by="solver"
+            ),
         ],
         hero=WHERE.format("spherical"),
         cautions=["Joint, couplings and supports do no work, and store none."],

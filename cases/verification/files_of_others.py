@@ -106,18 +106,18 @@ def answer(page: Page, kills: int, found: list[dict[str, Any]]) -> None:
     lost, broken = sum(column(found, "lost")), sum(column(found, "broken"))
     polite = sum(one["refused"] and one["untouched"] for one in found)
     page.answer(
-        "Can a command that is killed damage files of others?",
-        f"{'Yes' if lost + broken else 'No'}: {ended} of {total} runs of {len(found)} commands "
-        f"were ended by a kill, {lost} lost a file of others, {broken} left half a result.",
+        "Can a command that is killed damage files that are not its own?",
+        f"{'Yes' if lost + broken else 'No'}: a kill ended {ended} of {total} runs of {len(found)} "
+        f"commands; {lost} damaged a file that was not theirs, {broken} left half a result.",
         [
-            page.value("files of others lost or changed", lost, at_most=0),
-            page.value("results that are neither old nor new", broken, at_most=0),
+            page.value("files lost or changed that are not its own", lost, at_most=0),
+            page.value("results that are half written", broken, at_most=0),
             page.value("hidden files after the next run", sum(column(found, "left")), at_most=0),
             page.value("runs that a kill ended", ended),
-            page.value("commands that leave folders of others alone", polite, at_least=len(found)),
+            page.value("commands that leave other folders alone", polite, at_least=len(found)),
         ],
         hero=AFTER,
-        cautions=["A kill comes at a random moment: more of them would try more moments."],
+        cautions=[f"Each kill comes at a random moment: only {total} moments were tried."],
     )
 
 

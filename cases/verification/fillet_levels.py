@@ -166,18 +166,20 @@ def answer(page: Page, found: list[Point], exact: tuple[float, ...], chosen: int
     solid = [one for one in found if one.method == SOLID][-1]
     formula = next(one for one in found if one.method == FORMULA)
     page.answer(
-        "Which level gives the stress at a fillet?",
-        f"The meridian has K_t to {100 * best.error(exact):.1g}\u00a0% in "
-        f"{best.seconds:.1g}\u00a0s; "
-        f"formulas err by {100 * formula.error(exact):.2g}\u00a0%, the finest solid by "
-        f"{100 * solid.error(exact):.2g}\u00a0% in {solid.seconds:.2g}\u00a0s.",
+        "Which model gives the stress concentration factor K_t of a shaft's fillet?",
+        f"An axisymmetric model gives K_t within {100 * best.error(exact):.2g}\u00a0% in "
+        f"{best.seconds:.2g}\u00a0s; formulas err by {100 * formula.error(exact):.2g}\u00a0%, the "
+        f"finest solid mesh by {100 * solid.error(exact):.2g}\u00a0%.",
         [
-            page.value("error of the meridian as taken [%]", 100 * best.error(exact)),
+            page.value("error of the axisymmetric model [%]", 100 * best.error(exact)),
             page.value("error of the formulas of DIN 743-2 [%]", 100 * formula.error(exact)),
-            page.value("error of the finest solid [%]", 100 * solid.error(exact)),
-            page.value("processor time of the meridian [s]", best.seconds),
-            page.value("processor time of the finest solid [s]", solid.seconds),
+            page.value("error of the finest solid mesh [%]", 100 * solid.error(exact)),
+            page.value("processor time, axisymmetric model [s]", best.seconds),
+            page.value("processor time, finest solid mesh [s]", solid.seconds),
         ],
         hero=CHART,
-        cautions=["One shoulder: a sharper fillet costs the meridian little, and solids much."],
+        cautions=[
+            "Only one shoulder: a sharper fillet costs solid meshes much more, the axisymmetric "
+            "model little."
+        ],
     )

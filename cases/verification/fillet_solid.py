@@ -65,12 +65,13 @@ def answer(page: Page, rows: list[Record], unknowns: int) -> None:
     inside = all(figure.status == "good" for figure in figures)
     page.answer(
         "Can curved tetrahedra resolve the peak stress of a shaft's fillet?",
-        f"With {formatted(unknowns)} unknowns they find K_t in tension, bending and torsion within "
-        f"{worst:.2g} % of the meridian, {'inside' if inside else 'outside'} their bands.",
-        [*figures, page.value("largest difference from the meridian [%]", worst)],
+        f"With {formatted(unknowns)} unknowns they give K_t in tension, bending and torsion within "
+        f"{worst:.2g}\u00a0% of an axisymmetric model, {'inside' if inside else 'outside'} their "
+        "uncertainty bands.",
+        [*figures, page.value("largest difference from the axisymmetric model [%]", worst)],
         hero="Stress along the fillet in tension",
         cautions=[
-            "Free tetrahedra show no steady order: the band of two meshes is taken three times."
+            "Free tetrahedral meshes do not converge steadily: the band of two meshes is tripled."
         ],
     )
 

@@ -39,15 +39,16 @@ def answer(page: Page, worst: dict[str, float]) -> None:
     same = most <= ROUND_OFF
     page.answer(
         "Do results depend on where the origin is, and which way the axes point?",
-        f"{'No' if same else 'Yes'}: turned at random and moved by 10 m, displacements, reactions "
-        f"and stiffness differ by {formatted(most, 2, '')} at most.",
+        f"{'No' if same else 'Yes'}: when a model is turned and moved by 10\u00a0m, "
+        f"displacements, reactions and stiffness change by at most {formatted(most, 2, '')} of "
+        "their size.",
         [
             page.value(f"largest difference, {body}", value, at_most=ROUND_OFF, by="round-off")
             for body, value in worst.items()
         ],
         hero=AWAY,
         cautions=[
-            "Coordinates lose a digit for each power of ten of the distance from the origin."
+            "Coordinates lose one digit for every factor of ten in distance from the origin."
         ],
     )
 

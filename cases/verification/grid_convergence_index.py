@@ -80,9 +80,10 @@ def answer(page: Page) -> None:
     )
     agree = all(one.status == "good" for one in (coarse, fine, order, ratio))
     page.answer(
-        "Does the grid convergence index follow the published worked example?",
-        f"{'Yes' if agree else 'No'}: GCI {coarse.value:.2f} % and {fine.value:.2f} %, order "
-        f"{order.value:.2f}, {'to' if agree else 'not to'} the digits of Celik et al.",
+        "Does the grid convergence index (GCI) reproduce the published worked example?",
+        f"{'Yes' if agree else 'No'}: GCIs of {coarse.value:.2f}\u00a0% and "
+        f"{fine.value:.2f}\u00a0% and an order of {order.value:.2f} "
+        f"{'agree' if agree else 'do not all agree'} with the digits printed by Celik et al.",
         [
             coarse,
             fine,

@@ -7,6 +7,7 @@ from fe_drivetrain.cases.verification.shaft_inputs import HARMONICS, begin_unifo
 from fe_drivetrain.drivetrain_file import MATERIALS
 from fe_drivetrain.elasticity.mesh import Grading
 from fe_drivetrain.elasticity.revolution import end_stiffness
+from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite import Page, Record, Run, Target
 
 STEEL = MATERIALS["steel"]
@@ -45,28 +46,26 @@ def as_solid(bore: float, refinement: int, layers: int) -> float:
 
 def answer(page: Page, rows: list[Record]) -> None:
     """State the length that held ends take off, and what that is of a short shaft's stiffness."""
-    short = {row[SHAFT]: row[STIFFER] for row in rows if row[RATIO] == SOLVED}
     off = {
-        row[SHAFT]: page.value(f"length taken off, {row[SHAFT]} [diameters]", row[SHORTER])
+        row[SHAFT]: page.value(f"apparent shortening, {row[SHAFT]} [diameters]", row[SHORTER])
         for row in rows
     }
+    stiffness = {
+        name: page.judged(
+            f"{name}: stiffness over E A / L between held ends, L = {SOLVED:g} D",
+            f"stiffness over E A / L, L = {SOLVED:g} D, {name}",
+            "axisymmetric model",
+        )
+        for name in off
+    }
+    solid, bored = (percent_text(stiffness[name].value - 1) for name in ("solid", "bored"))
     page.answer(
         "How much stiffer is a shaft in tension whose ends are clamped?",
-        f"By {short['solid']:.2g} % (solid) and {short['bored']:.2g} % (bored) where it is as long "
-        f"as wide: as if {off['solid'].value:.2g} and {off['bored'].value:.2g} diameters shorter.",
-        [
-            *off.values(),
-            *(
-                page.judged(
-                    f"{name}: stiffness over E A / L between held ends, L = {SOLVED:g} D",
-                    f"stiffness over E A / L, L = {SOLVED:g} D, {name}",
-                    "meridian",
-                )
-                for name in off
-            ),
-        ],
+        f"A solid shaft as long as wide becomes {solid} stiffer, a bored one {bored}, as if they "
+        f"were about {off['solid'].value:.2g} and {off['bored'].value:.2g} diameters shorter.",
+        [*off.values(), *stiffness.values()],
         hero=ADDED,
-        cautions=["Ends are held flat and round, as by rigid flanges; free ends take nothing off."],
+        cautions=["Ends are held flat and round, as by rigid flanges; free ends shorten nothing."],
     )
 
 

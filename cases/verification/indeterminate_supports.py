@@ -107,13 +107,14 @@ def answer(page: Page, largest: float) -> None:
 
     def on_main(supports: str) -> KeyFigure:
         quantity = f"{supports}, force: load on the main bearing, solid"
-        return page.judged(quantity, f"main bearing, {supports}", "beam", unit="MN")
+        return page.judged(quantity, f"load on the main bearing, {supports}", "beam", unit="MN")
 
     rigid, soft = on_main("three rigid supports"), on_main("two bearings, soft gearbox")
     page.answer(
-        "How is a hub force shared where statics leaves the supports open?",
-        f"Under 1\u00a0MN at the hub the main bearing carries {certain_value(rigid)} on three "
-        f"rigid supports; solids and beams agree within {largest:.2g} % on five sets.",
+        "How do supports share a hub force where statics alone does not determine it?",
+        f"Under 1\u00a0MN at the hub the main bearing of three rigid supports carries "
+        f"{certain_value(rigid)}; solids and beams agree within {largest:.2g}\u00a0% for five "
+        "arrangements.",
         [
             rigid,
             soft,
@@ -128,9 +129,7 @@ def answer(page: Page, largest: float) -> None:
             page.value("largest difference of solid and beam [%]", largest),
         ],
         hero=SHARED,
-        cautions=[
-            "Supports act evenly on a section of the solid: seats of bearings are not modelled."
-        ],
+        cautions=["Supports act evenly on a section of the shaft: bearing seats are not modelled."],
     )
 
 

@@ -57,11 +57,13 @@ def answer(page: Page) -> None:
     )
     page.answer(
         f"What does an interference of {1e6 * MISFIT:g} µm on the radius do to ring and shaft?",
-        f"It presses them together with {certain_value(pressure)} and puts {certain_value(bore)} "
-        "of hoop stress into the ring's bore.",
+        f"It presses ring and shaft together with {certain_value(pressure)} and causes a hoop "
+        f"stress of {certain_value(bore)} in the ring's bore.",
         [pressure, bore, outside, shaft, seat],
         hero=BY_RADIUS,
-        cautions=["The misfit is chosen, of a usual order; the answer grows in proportion to it."],
+        cautions=[
+            "The interference is assumed, of a usual size; pressure and stress grow with it."
+        ],
     )
 
 

@@ -289,18 +289,18 @@ def answer(page: Page, turned: list[Record], exchanged: list[Record]) -> None:
     wrong = sum(column(turned, "read with another value"))
     other = sum(not row["the same value"] for row in exchanged)
     page.answer(
-        "Can a damaged file of the cache give another result?",
-        f"{'Yes' if wrong + other else 'No'}: of {formatted(count)} bits turned and "
-        f"{len(exchanged)} files cut off or exchanged, {wrong + other} gave another value; files "
-        "are made again.",
+        "Can a damaged cache file give a wrong result?",
+        f"{'Yes' if wrong + other else 'No'}: of {formatted(count)} flipped bits and "
+        f"{len(exchanged)} truncated or exchanged cache files, {wrong + other} gave another value; "
+        "the program makes damaged files again.",
         [
-            page.value("turned bits that gave another value", wrong, at_most=0),
+            page.value("flipped bits that gave another value", wrong, at_most=0),
             page.value("damaged files that gave another value", other, at_most=0),
-            page.value("turned bits that were noticed", noticed, at_least=count),
-            page.value("kinds of kept files that were damaged", len(turned)),
+            page.value("flipped bits that were noticed", noticed, at_least=count),
+            page.value("kinds of cache files that were damaged", len(turned)),
         ],
         hero=FATES,
-        cautions=["Bits are drawn at random: one file of each kind stands for all of its kind."],
+        cautions=["Bits are drawn at random, in one file of each kind."],
     )
 
 

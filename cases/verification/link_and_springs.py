@@ -185,12 +185,12 @@ def answer(page: Page, half: float, slack: float) -> None:
     """
     holds = abs(half - 1.0) <= slack
     page.answer(
-        "Can a shaft be two rigid links with the spring of the paper's Eq 15?",
-        f"The paper's Eq\u00a015 {'holds' if holds else 'does not hold'}: in the middle it gives "
-        f"{100 * half:.0f}\u00a0% of an end force's deflection, and no split serves all loads.",
+        "Can two rigid links with the spring of the paper's Eq 15 stand for an elastic shaft?",
+        f"The paper's Eq\u00a015 {'holds' if holds else 'does not hold'}: with the spring at mid "
+        f"length, an end force gives {100 * half:.0f}\u00a0% of the elastic shaft's deflection.",
         [
             page.value(
-                "deflection by Eq 15 at d = 1/2, of the solid's [%]",
+                "tip deflection by Eq 15, spring at mid length, of the solid's [%]",
                 100 * half,
                 beside=100.0,
                 by="solid",
@@ -198,14 +198,17 @@ def answer(page: Page, half: float, slack: float) -> None:
             *(
                 page.judged(
                     f"{load}: split that meets both deflection and rotation of the tip, solid",
-                    f"split needed, {load}",
+                    f"spring position needed over length, {load}",
                     "beam with shear",
                 )
                 for load in BEAM
             ),
         ],
         hero=BY_SPLIT,
-        cautions=["The shaft is the solid one that the paper's table implies: it gives no size."],
+        cautions=[
+            "No single position of the spring is right for all loads.",
+            "The shaft is the solid one that the paper's table implies: it gives no size.",
+        ],
         claim="holds" if holds else "does not hold",
     )
 

@@ -76,12 +76,15 @@ def answer(page: Page) -> None:
     theory = all(one.status == "good" for one in (*orders, kept))
     *first, last = (f"{one.value:.2f}" for one in orders)
     page.answer(
-        "Do hexahedra converge at the orders of theory?",
-        f"{'Yes' if theory else 'No'}, those of 8, 20 and 27 nodes at {', '.join(first)} and "
-        f"{last} in L2; on trapezoids 20 nodes fall to {lost.value:.2f} in energy.",
+        "Do hexahedra converge with the orders of theory?",
+        f"{'Yes' if theory else 'No'}: in the L2 norm, hexahedra of 8, 20 and 27 nodes converge "
+        f"with orders of {', '.join(first)} and {last}.",
         [*orders, kept, lost],
         hero=captioned(SOLUTION),
-        cautions=["Meshes of trapezoids, however fine, take an order from elements of 20 nodes."],
+        cautions=[
+            f"On meshes of trapezoids, however fine, elements of 20 nodes fall to an order of "
+            f"{lost.value:.2f} in the energy norm."
+        ],
     )
 
 

@@ -15,13 +15,14 @@ def answer(page: Page) -> None:
     )
     theory = all(one.status == "good" for one in (*l2, *energy))
     page.answer(
-        "Do linear and quadratic tetrahedra converge at the orders of theory?",
-        f"{'Yes' if theory else 'No'}: in L2 linear ones at {l2[0].value:.2f}, quadratic ones at "
-        f"{l2[1].value:.2f} on a bar and {l2[2].value:.2f} on a curved ring.",
+        "Do linear and quadratic tetrahedra converge with the orders of theory?",
+        f"{'Yes' if theory else 'No'}: in the L2 norm linear ones converge with order "
+        f"{l2[0].value:.2f}, quadratic ones with {l2[1].value:.2f} on a bar and "
+        f"{l2[2].value:.2f} on a curved ring.",
         [*l2, *energy],
         hero=captioned(SOLUTION),
         cautions=[
-            "On a curved body quadratic tetrahedra keep their order only if they are curved."
+            "On a curved body quadratic tetrahedra keep their order only if their sides are curved."
         ],
     )
 

@@ -151,21 +151,22 @@ def answer(page: Page, rows: list[Record], cost: list[Record]) -> None:
     good = all(check.passed for check in page.checks if check.quantity in entries)
     slowest = max(column(cost, MERIDIAN_TIME))
     page.answer(
-        "Can a shaft's stiffness come from its meridian in place of a solid?",
-        f"{'Yes' if good else 'No'}: stiffnesses of {len(cost)} shafts are "
-        f"{'all' if good else 'not all'} within the solids' bands, at most {100 * largest:.2g} % "
-        f"from their limits, in {slowest:.0f} ms or less.",
+        "Can an axisymmetric model replace a solid mesh for the stiffness of a shaft?",
+        f"{'Yes' if good else 'No'}: for {len(cost)} shafts it is within "
+        f"{100 * largest:.2g}\u00a0% of the solid's extrapolated stiffness, "
+        f"{'inside' if good else 'not always inside'} the uncertainty, and takes at most "
+        f"{slowest:.0f}\u00a0ms.",
         [
-            page.value("largest difference from the limit of the solids [%]", 100 * largest),
+            page.value("largest difference from the solids, extrapolated [%]", 100 * largest),
             *figures,
-            page.value("slowest meridian [ms]", slowest),
+            page.value("longest time, axisymmetric model [ms]", slowest),
             page.value(
-                "slowest solid, assembly and solve [s]",
+                "longest time, solid: assembly and solve [s]",
                 max(column(cost, "its assembly and solve [s]")),
             ),
         ],
         hero=GAPS,
-        cautions=["Both ends are rigid: seats of bearings that deform are another question."],
+        cautions=["Both ends are rigid: bearing seats that deform are not covered."],
     )
 
 

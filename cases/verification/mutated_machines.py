@@ -35,7 +35,7 @@ TABLES = ("drivetrain_a", "drivetrain_b", "drivetrain_c", "nrel_750kw")
 SEED = 20163
 #: Of those that are tried: so many are taken, and so many refused, or the case would test little.
 MINIMUM = 0.1
-FATES = "Machines and gear tables with slips: refused, taken and right, or wrong"
+FATES = "Machines and gear tables with typing errors: rejected, read and right, or wrong"
 FACTS = (
     "mass symmetric and positive, stiffness symmetric and not negative, no motion of 0 Hz beside "
     "turning, Rayleigh's quotients, twice the frequencies of four times the stiffness, turning at "
@@ -80,8 +80,8 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, every: dict[str, list[Record]]) -> None:
     """State what became of all tables with slips, and show it."""
     fates = {
-        "refused": lambda row: not row["taken"] and not row["wrong"],
-        "taken and right": lambda row: row["taken"] and not row["wrong"],
+        "rejected": lambda row: not row["taken"] and not row["wrong"],
+        "read and right": lambda row: row["taken"] and not row["wrong"],
         "wrong": lambda row: bool(row["wrong"]),
     }
     counts = {
@@ -90,19 +90,22 @@ def answer(page: Page, every: dict[str, list[Record]]) -> None:
     }
     refused, right, wrong = (sum(of.values()) for of in counts.values())
     page.answer(
-        "What happens to a machine whose file has a slip of the pen?",
-        f"Of {refused + right + wrong} machines and gear tables with slips {refused} are refused "
-        f"in one sentence, {right} are taken and right by physics, {wrong} are wrong.",
+        "What happens to a machine file with a typing error?",
+        f"Of {refused + right + wrong} machine files and gear tables with a typing error, "
+        f"{refused} are rejected with one sentence, {right} obey mechanics, {wrong} go wrong.",
         [
-            page.value("wrong without a word", wrong, at_most=0),
-            *(page.value(f"{name} refused", n) for name, n in counts["refused"].items()),
+            page.value("files that go wrong", wrong, at_most=0),
+            *(page.value(f"{name} rejected", n) for name, n in counts["rejected"].items()),
             *(
-                page.value(f"{name} taken, right", n)
-                for name, n in counts["taken and right"].items()
+                page.value(f"{name} read that obey mechanics", n)
+                for name, n in counts["read and right"].items()
             ),
         ],
         hero=FATES,
-        cautions=["What is taken is held to facts of mechanics, not to what its author meant."],
+        cautions=[
+            "Files that are read are checked by laws of mechanics: what their author meant is "
+            "unknown."
+        ],
     )
     page.section("What became of them")
     page.add(bars(FATES, counts, "tables", stacked=True))

@@ -67,18 +67,22 @@ def answer(page: Page, found: list[Outcome], worst: dict[str, tuple[float, str]]
     refused = sum(bool(o.sentence) and not o.faults for o in found)
     taken, most = len(found) - refused - faults, max(error for error, _ in worst.values())
     page.answer(
-        "What happens to a scene that is wrong in some place?",
-        f"Of {len(found)} mutated scenes {refused} are refused in one sentence, {taken} are taken "
-        f"and {'obey' if most <= 1 else 'do not all obey'} mechanics, {faults} fail otherwise.",
+        "What happens to a drivetrain file that is wrong in one place?",
+        f"Of {len(found)} files with one change, {refused} are rejected with one sentence, {taken} "
+        f"are read and {'obey' if most <= 1 else 'do not all obey'} mechanics, {faults} fail "
+        "otherwise.",
         [
-            page.value("neither refused in one sentence nor taken throughout", faults, at_most=0),
-            page.value("refused in one sentence", refused),
-            page.value("taken", taken),
-            page.value("worst error of any fact, over round-off", most, at_most=1.0),
-            page.value("facts that are looked at", len(worst)),
+            page.value("files that fail otherwise", faults, at_most=0),
+            page.value("files rejected with one sentence", refused),
+            page.value("files that are read", taken),
+            page.value("largest error in a law of mechanics, over round-off", most, at_most=1.0),
+            page.value("laws of mechanics that are checked", len(worst)),
         ],
         hero=BY_CHANGE,
-        cautions=["Facts are those of any sound scene: what its author meant cannot be known."],
+        cautions=[
+            "Files that are read are checked by laws of mechanics: what their author meant is "
+            "unknown."
+        ],
     )
 
 

@@ -115,20 +115,21 @@ def _show(page: Page, root: Path, tried: Sequence[Tried], others: dict[str, str]
     rate = 100.0 * caught / count
     page.found("faults that tests catch [%]", rate)
     page.answer(
-        "How many faults that somebody could make do the tests catch?",
-        f"The tests catch {caught} of {count} single faults, {rate:.1f} %, which "
+        "How many faults that are put into the program on purpose do its tests catch?",
+        f"The tests catch {caught} of {count} deliberate faults, {rate:.1f}\u00a0%, which "
         f"{'reaches' if rate >= GOAL else 'does not reach'} the goal of {GOAL:g} %.",
         [
             page.value("faults that tests catch [%]", rate, at_least=GOAL, by="goal"),
-            page.value("of all such faults, at least [%]", low),
+            page.value("of all such faults, at least, at 95 % confidence [%]", low),
             page.value("faults that were tried", count),
             page.value("faults that survive", count - caught),
         ],
         hero=ROOMS,
         cautions=[
-            "Rows are chosen by hand, and tests written for them: of other faults fewer may be "
-            f"caught. The bounds, {low:.1f} to {high:.1f} % at a confidence of "
-            f"{100 * CONFIDENCE:g} %, are those of an independent sample (Clopper, Pearson 1934)."
+            "The faults are chosen by hand, and tests written for them: fewer of other faults may "
+            f"be caught. If they were an independent sample, {low:.1f} to {high:.1f} % of all such "
+            f"faults would be caught, at a confidence of {100 * CONFIDENCE:g} % (Clopper, Pearson "
+            "1934)."
         ],
     )
     survivors = [_survivor(one) for one in tried if not one.caught]

@@ -9,6 +9,7 @@ from fe_drivetrain.common import Floats
 from fe_drivetrain.comparison import as_printed
 from fe_drivetrain.drivetrain_file import Material
 from fe_drivetrain.elasticity.mesh import Block, brick
+from fe_drivetrain.report.number_text import certain_value
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target, column
 
 STEEL = Material(youngs_modulus=200e9, poisson_ratio=0.3, density=8000.0)
@@ -186,15 +187,16 @@ def answer(page: Page, apart: float, finest: Record) -> None:
         Mode 4 on lines with the smallest elements at the edge.
     """
     sides = page.judged("sides: bending (1, 1)", "mode 4 on whole sides", "exact wave")
-    fall = page.judged(FALL, "last fall over the one before")
+    fall = page.judged(FALL, "last fall of mode 4 over the fall before")
     has_limit = fall.status == "bad"
-    verdict = "The reference of 45.897 Hz does not hold on lines, where mode 4 is "
-    verdict += f"{finest[FIRST]:.2f} Hz and falls on: it is that of whole sides."
+    verdict = "Supported on lines, mode 4 does not reach the reference of 45.897\u00a0Hz: it is "
+    verdict += f"{finest[FIRST]:.2f}\u00a0Hz and still falls; on whole sides it is "
+    verdict += f"{certain_value(sides)}."
     if has_limit:
-        verdict = f"On the benchmark's lines mode 4 settles at {finest[FIRST]:.2f} Hz, beside the "
-        verdict += "reference of 45.897 Hz."
+        verdict = f"Supported on lines, mode 4 converges to {finest[FIRST]:.2f}\u00a0Hz; the "
+        verdict += "reference is 45.897\u00a0Hz."
     page.answer(
-        "Which frequencies has the simply supported solid plate, and have they a limit?",
+        "Which frequencies does the simply supported solid plate have, and do they converge?",
         verdict,
         [
             page.value(
@@ -208,10 +210,10 @@ def answer(page: Page, apart: float, finest: Record) -> None:
             sides,
             page.judged("lines: in plane, mode 8", "mode 8, in plane", "NAFEMS", "193.59"),
             page.judged("lines: in plane, mode 9", "mode 9, in plane", "NAFEMS", "206.19"),
-            page.value("own mesh of the benchmark: largest difference [%]", apart),
+            page.value("largest difference on the benchmark's own mesh [%]", apart),
         ],
         hero=FALLING,
-        cautions=["The benchmark is quoted: its own text was not read."],
+        cautions=["The benchmark is known from quotations: its own text was not read."],
         claim="" if has_limit else "holds in part",
     )
 

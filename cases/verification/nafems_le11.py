@@ -102,10 +102,15 @@ def answer(page: Page, kinds: list[str]) -> None:
     ]
     best = figures[0]
     page.answer(
-        "Which stress does a temperature that varies cause in a solid between two planes?",
-        f"sigma_zz at A is {certain_value(best)} by {kinds[-1]}, "
-        f"{100 * abs(best.value / TARGET - 1):.2g} % from the -105 MPa of NAFEMS.",
-        [*figures, page.value("error of that [%]", 100 * abs(best.value / TARGET - 1))],
+        "Which stress does a varying temperature cause in the solid of NAFEMS LE11 at point A?",
+        f"{kinds[-1].capitalize()} give a stress sigma_zz of {certain_value(best)} at point A, "
+        f"{100 * abs(best.value / TARGET - 1):.2g}\u00a0% from NAFEMS's −105\u00a0MPa.",
+        [
+            *figures,
+            page.value(
+                f"difference from NAFEMS, {kinds[-1]} [%]", 100 * abs(best.value / TARGET - 1)
+            ),
+        ],
         hero=STRESS,
         cautions=[],
     )

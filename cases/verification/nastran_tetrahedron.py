@@ -49,16 +49,16 @@ def answer(page: Page, worst: float) -> None:
     same = worst <= SINGLE
     page.answer(
         "Does a tetrahedron under pressure move as in MSC Nastran?",
-        f"{'Yes' if same else 'No'}: its six displacements differ from Nastran's by "
-        f"{formatted(worst, 1, '')} of the largest at most, "
-        f"{'no more' if same else 'more'} than single precision rounds.",
+        f"{'Yes' if same else 'No'}: its six displacements differ from Nastran's by at most "
+        f"{formatted(worst, 1, '')} of the largest, {'no more' if same else 'more'} than the "
+        "round-off of single precision.",
         [
             page.value("largest difference, over the grid's largest", worst, at_most=SINGLE),
             *figures,
         ],
         hero=AGAINST,
         cautions=[
-            "Which grid is where is not stated in what was read; one reading fits all digits."
+            "The source does not say where each grid point lies: one arrangement fits all digits."
         ],
     )
     page.errors(AGAINST, figures)

@@ -49,8 +49,8 @@ def answer(page: Page, rows: list[Record]) -> None:
     largest = max(abs(row["solid"] / row["frame"] - 1) for row in rows)
     page.answer(
         "How far does the hub of an overhung main shaft move under its loads?",
-        f"1 MN moves the hub by {certain_value(sag)}; the meshed solid and a beam with shear "
-        f"differ by at most {percent_text(largest)} in all motions.",
+        f"A force of 1\u00a0MN moves the hub by {certain_value(sag)}; solid mesh and beam with "
+        f"shear differ by at most {percent_text(largest)} in all hub motions.",
         [
             sag,
             page.judged(

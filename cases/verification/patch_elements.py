@@ -32,11 +32,11 @@ def answer(page: Page, rows: list[Record]) -> None:
     """State how exactly the elements reproduce constant strain."""
     worst = {what: max(row[what] for row in rows) for what in CHECKS}
     largest = max(worst.values())
-    kind = "round-off" if all(check.passed for check in page.checks) else "more than round-off"
+    exact = "Yes" if all(check.passed for check in page.checks) else "No"
     page.answer(
         "Does every element reproduce a constant strain exactly, distorted and curved ones too?",
-        f"Displacements and stresses of all {len(rows)} blocks, distorted and curved ones among "
-        f"them, are off by at most {formatted(largest, 2, '')} of the largest: {kind}.",
+        f"{exact}: on all {len(rows)} blocks, distorted and curved ones too, displacements and "
+        f"stresses err by at most {formatted(largest, 2, '')} of their largest value.",
         [
             page.value(f"largest error, {what}", worst[what], at_most=within, by="round-off")
             for what, (within, _) in CHECKS.items()

@@ -65,10 +65,10 @@ def answer(
     """State how exactly constant stress passes, and what ties node by node make of it."""
     largest, loose = max(exact.values()), max(by_nodes.values())
     page.answer(
-        "Does a constant stress pass every interface, whether its meshes match or not?",
-        "Bonds, ties, springs and rigid faces pass it with errors up to "
-        f"{formatted(largest, 2, '')}; meshes tied node by node err by {formatted(loose, 2)} "
-        "times the stress.",
+        "Does a constant stress pass every interface unchanged, whether its meshes match or not?",
+        "Bonds, ties, springs and rigid faces pass a constant stress within "
+        f"{formatted(largest, 2, '')} of it; meshes tied node by node err by "
+        f"{formatted(loose, 2)} times the stress.",
         [
             page.value(
                 f"largest error through {len(ties)} bonds and mortar ties, of unit stress",
@@ -82,7 +82,7 @@ def answer(
                 at_most=WITHIN,
                 by="round-off",
             ),
-            page.value("largest error tied node by node, of unit stress", loose),
+            page.value("largest error if tied node by node, of unit stress", loose),
             page.judged(
                 "sliding sphere under pressure: order of the stress error",
                 "order of the error of pressure through the sliding sphere",

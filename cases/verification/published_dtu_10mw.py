@@ -71,13 +71,13 @@ def answer(page: Page, shaft: MainShaft, with_shaft: float, free: float) -> None
     wang = "Wang et al."
     swings = page.judged("free-free frequency, two masses", "free-free frequency", wang, "4.003")
     held = page.judged(
-        "free-fixed frequency, two masses", "frequency with the generator held", wang, "0.612"
+        "free-fixed frequency, two masses", "frequency with the generator locked", wang, "0.612"
     )
     same = "as published" if swings.status == held.status == "good" else "other than published"
     page.answer(
         "At which frequencies do rotor and generator of the DTU 10 MW turbine swing?",
-        f"They swing against each other at {certain_value(swings)}, and the rotor at "
-        f"{certain_value(held)} where the generator is held: {same}.",
+        f"Rotor and generator swing against each other at {certain_value(swings)}, the rotor alone "
+        f"at {certain_value(held)} with the generator locked: {same}.",
         [
             swings,
             held,

@@ -93,10 +93,10 @@ def answer(page: Page, placeholder: float, usual: tuple[float, float]) -> None:
     times = f"{1e9 * found.value / placeholder:.0f} times softer"
     page.answer(
         "Which torsional stiffness has the main shaft of the IEA 10 MW turbine?",
-        f"Its tube has {certain_value(found)}; the published {published} is not that of this "
-        f"shaft but of the DTU 10 MW turbine's, {times}."
+        f"The shaft's tube has {certain_value(found)}; the published {published} does not belong "
+        f"to it but to the DTU 10\u00a0MW turbine, and is {times}."
         if is_softer
-        else f"Its tube has {certain_value(found)}, beside the published {published}.",
+        else f"The shaft's tube has {certain_value(found)}, beside the published {published}.",
         [
             found,
             page.value(
@@ -109,6 +109,6 @@ def answer(page: Page, placeholder: float, usual: tuple[float, float]) -> None:
             page.value("the shaft with G = 80.8 GPa [GN m/rad]", usual[1] / 1e9),
         ],
         hero=BY_SHAFT,
-        cautions=["What counts as the shaft, from where to where, decides: see the bars."],
+        cautions=["The stiffness depends on which length is counted as the shaft: see the chart."],
         claim="does not hold" if is_softer else "holds",
     )

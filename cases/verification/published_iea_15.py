@@ -116,8 +116,8 @@ def answer(page: Page, published: float, earlier: float, as_filed: float) -> Non
     softer = percent_text(1 - as_filed / published, 3)
     page.answer(
         "Why do two models of the IEA 15 MW turbine's main shaft differ in torsional stiffness?",
-        f"OpenFAST's {giga} is that of the tube; HAWC2's shaft is {softer} softer, made from an "
-        "earlier stiffness and filed with another length."
+        f"OpenFAST's {giga} is that of the tube; HAWC2's shaft is {softer} softer because it "
+        "was made from an earlier stiffness and another length."
         if tube.status == "good"
         else f"OpenFAST's {giga} is not that of the tube; HAWC2's shaft is {softer} softer.",
         [

@@ -85,10 +85,11 @@ def answer(page: Page, placeholder: float, usual: tuple[float, float]) -> None:
     is_placeholder = placeholder > 1.1 * usual[1]
     page.answer(
         "Which torsional stiffness has the main shaft of the IEA 22 MW turbine?",
-        f"Its thin tube has {certain_value(found)}; the {released} of the released model, "
-        f"{placeholder / times:.0f} times as much, is not a stiffness of this shaft."
+        f"The shaft's thin tube has {certain_value(found)}; the released model has {released}, "
+        f"{placeholder / times:.0f} times as much, which is not this shaft's stiffness."
         if is_placeholder
-        else f"Its thin tube has {certain_value(found)}, beside {released} of the released model.",
+        else f"The shaft's thin tube has {certain_value(found)}, beside {released} of the released "
+        "model.",
         [
             found,
             page.value(

@@ -62,8 +62,8 @@ def answer(page: Page, finest: list[Record]) -> None:
     largest = max(abs(row[STIFFNESS] / row[EXACT] - 1) for row in finest)
     page.answer(
         "How stiff is a meshed shaft in pure bending, and how does its section deform?",
-        f"It has {certain_value(solid)} solid and {certain_value(bored)} bored, at most "
-        f"{percent_text(largest)} from E I; its skin moves sideways by {certain_value(sideways)}, "
+        f"The bending stiffness is within {percent_text(largest)} of E\u00a0I, solid or bored; the "
+        f"bored shaft's skin moves sideways by {certain_value(sideways)}, "
         f"{percent_text(sideways.value / (sideways.limit or 1.0) - 1)} from exact.",
         [
             solid,

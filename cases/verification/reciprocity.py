@@ -79,11 +79,12 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, rows: list[Record]) -> None:
     """State how symmetric the works of the unit loads are."""
     worst = {row["scene"]: row[WORK] for row in rows}
+    good = max(worst.values()) <= WITHIN
     spherical, bonded = (formatted(worst[kind], 2, "") for kind in ("spherical", "bonded"))
     page.answer(
         "Is the model of the main bearing reciprocal, as Maxwell and Betti demand?",
-        "Mutual works of ten unit loads differ by at most "
-        f"{spherical} of their size in the spherical and {bonded} in the bonded bearing.",
+        f"{'Yes' if good else 'No'}: mutual works of ten unit loads differ by at most {spherical} "
+        f"of their size with a spherical bearing, by {bonded} with a bonded one.",
         [
             *(
                 page.value(

@@ -55,10 +55,10 @@ def answer(page: Page, ratios: tuple[float, ...], exact: dict[float, Record]) ->
         -1e6 * ring(ratio).thin() / exact[ratio][CLOSING] - 1 for ratio in (ratios[0], ratios[-1])
     ]
     page.answer(
-        "How far does a ring close between opposite loads, and when is the thin-ring formula good?",
-        f"With R/h = {ratios[-1]:g} it closes by {value_text(-thin.value, thin.unit)} under "
-        f"1 MN/m; the thin-ring formula misses {percent_text(misses[1])} of that, at "
-        f"R/h = {ratios[0]:g} {percent_text(misses[0])}.",
+        "How far do two opposite loads close a ring, and when is the thin-ring formula good?",
+        f"A ring with a radius of {ratios[-1]:g} wall thicknesses closes by "
+        f"{value_text(-thin.value, thin.unit)} under 1\u00a0MN/m; the thin-ring formula errs by "
+        f"{percent_text(misses[1])}, at {ratios[0]:g} thicknesses by {percent_text(misses[0])}.",
         [
             thin,
             thick,
@@ -73,6 +73,7 @@ def answer(page: Page, ratios: tuple[float, ...], exact: dict[float, Record]) ->
             ),
         ],
         hero=BY_RATIO,
+        cautions=["R is the mean radius and h the thickness of the wall."],
     )
 
 

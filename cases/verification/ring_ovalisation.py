@@ -66,9 +66,9 @@ def answer(page: Page, ratio: Floats) -> None:
     oval = page.judged(f"n = 2: {radial}", f"{radial}, two waves", "Michell", unit="mm")
     page.answer(
         "How far does a ring ovalise under a pressure that varies round it?",
-        f"A pressure of two waves and 1 MPa moves its bore by "
-        f"{value_text(-oval.value, oval.unit)}, {percent_text(ratio[0] - 1)} more than a thin "
-        f"ring's; with eight waves {percent_text(ratio[6] - 1)} more.",
+        f"Two waves of 1\u00a0MPa of pressure move a ring's bore by "
+        f"{value_text(-oval.value, oval.unit)}, {percent_text(ratio[0] - 1)} more than in "
+        f"thin-ring theory; eight waves give {percent_text(ratio[6] - 1)} more.",
         [
             oval,
             page.judged(f"n = 2: {hoop}", f"{hoop}, two waves", "Michell"),

@@ -54,18 +54,21 @@ def answer(page: Page, over_cowper: float, over_even: float) -> None:
     )
     page.answer(
         "How far does an overhung shaft sag under its own weight?",
-        f"With {RATIO:g} diameters of overhang it sags by "
+        f"A shaft with {RATIO:g} diameters of overhang sags by "
         f"{value_text(-sag.value, sag.unit, sag.band, with_band=False)}; a beam with Cowper's "
-        f"shear coefficient errs by {percent_text(over_cowper)}, one held evenly by "
-        f"{percent_text(over_even)}.",
+        f"shear coefficient differs by {percent_text(over_cowper)}.",
         [
             sag,
             page.judged("rotation of the tip, solid", "rotation of the tip", "beam", unit="µrad"),
             page.judged("mass", by="density times volume"),
-            page.value("beyond the beam with Cowper's coefficient [%]", 100 * over_cowper),
-            page.value("beyond the beam held evenly [%]", 100 * over_even),
+            page.value("solid beyond a beam with Cowper's coefficient [%]", 100 * over_cowper),
+            page.value("solid beyond a beam held evenly [%]", 100 * over_even),
         ],
         hero=BEYOND,
+        cautions=[
+            f"With the shear coefficient of a root that is held evenly, the beam differs by "
+            f"{percent_text(over_even)}."
+        ],
     )
 
 

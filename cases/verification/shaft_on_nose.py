@@ -129,11 +129,12 @@ def answer(page: Page, short: Record, slender: Record) -> None:
     """State how far beams are from the tubes, short and slender."""
     less = [1 - row["beam [nm/N]"] / row["meridian [nm/N]"] for row in (short, slender)]
     times = f"{slender['lengths times']:g}"
-    are = "They are not" if less[0] > 0.01 else "They are"
+    can = "They cannot" if less[0] > 0.01 else "They can"
     page.answer(
-        "Are the short, wide tubes of a direct drive's shaft and nose beams?",
-        f"{are}: a beam's hub deflects {percent_text(less[0])} less than that of the tubes in "
-        f"their meridian, and {percent_text(less[1])} less at {times} times the lengths.",
+        "Can the short, wide tubes of a direct drive's shaft and nose be modelled as beams?",
+        f"{can}: with beams the hub deflects {percent_text(less[0], 3)} less than in an "
+        f"axisymmetric model; if the tubes are {times} times as long, {percent_text(less[1])} "
+        "less.",
         [
             page.judged(
                 "solid, lengths as they are: deflection of the hub",
@@ -141,13 +142,15 @@ def answer(page: Page, short: Record, slender: Record) -> None:
                 "meridian",
             ),
             page.value(
-                "the same of beams [nm/N]",
+                "deflection of the hub under 1 N, beams [nm/N]",
                 short["beam [nm/N]"],
                 beside=short["meridian [nm/N]"],
                 by="meridian",
             ),
-            page.value("beams too stiff by [%]", 100 * less[0]),
-            page.value(f"beams too stiff by, {times} times the lengths [%]", 100 * less[1]),
+            page.value("deflection of beams too small by [%]", 100 * less[0]),
+            page.value(
+                f"deflection of beams too small by, {times} times the lengths [%]", 100 * less[1]
+            ),
         ],
         hero=BY_LENGTH,
     )

@@ -55,8 +55,8 @@ def answer(page: Page, largest: float) -> None:
     reaction = f"own weight: {REACTION.partition(' [')[0]}"
     page.answer(
         "How far does a shaft on two simple supports deflect at mid span?",
-        f"1 MN at mid span moves it by {certain_value(by_force)}; the meshed solid and a beam with "
-        f"shear differ by at most {percent_text(largest)} under all loads.",
+        f"A force of 1\u00a0MN at mid span deflects the shaft by {certain_value(by_force)}; solid "
+        f"mesh and beam with shear differ by at most {percent_text(largest)}.",
         [
             by_force,
             by_moment,

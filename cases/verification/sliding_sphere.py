@@ -117,10 +117,9 @@ def answer(page: Page, largest: float) -> None:
     }
     found = {joint: certain_value(figure) for joint, figure in forms.items()}
     page.answer(
-        "How stiff is a spherical bearing between elastic rings, by the form of its joint?",
-        f"A sliding joint has {found['sliding']}, an averaged one {found['averaged']}, rigid faces "
-        f"{found['rigid']}, a bonded one {found['bonded']}: within {percent_text(largest)} of "
-        "exact.",
+        "How does the stiffness of a spherical bearing depend on the model of its joint?",
+        f"The bearing has {found['sliding']} if its joint slides and {found['bonded']} if it is "
+        f"bonded; all {len(forms)} joint models are within {percent_text(largest)} of exact.",
         [
             *forms.values(),
             page.judged(

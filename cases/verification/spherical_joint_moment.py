@@ -63,9 +63,9 @@ def answer(page: Page, rows: list[Record], from_statics: float, bonded: float) -
     moment = max(column(rows, MOMENT))
     page.answer(
         "Does a spherical main bearing carry a moment, and are its reactions those of statics?",
-        f"Each spherical joint carries at most {value_text(moment, NM)} under unit hub loads, "
-        f"a bonded bearing {value_text(bonded, NM)}; reactions differ from statics "
-        f"by {formatted(from_statics, 2, '')} at most.",
+        f"{'No' if moment <= WITHIN else 'Yes'}: under 1\u00a0N\u00a0m at the hub a spherical "
+        f"joint carries at most {value_text(moment, NM)}, a bonded one {value_text(bonded, NM)}; "
+        f"reactions agree with statics within {formatted(from_statics, 2, '')}.",
         [
             page.value(
                 "largest moment of a spherical joint, unit hub loads [N m]",

@@ -107,11 +107,11 @@ def estimate_shaft(run: Run, name: str, imbalances: list[float]) -> list[Record]
 def answer(page: Page, found: Floats) -> None:
     """State how far estimates are from true errors: estimated over true error of each mesh."""
     least, most = float(found.min()), float(found.max())
-    holds = "holds" if least >= 1.0 / FACTOR else "does not always hold"
+    contains = "contains" if least >= 1.0 / FACTOR else "does not always contain"
     page.answer(
         "Can the error of a stiffness be estimated from one mesh?",
-        f"Estimates are {formatted(least, 3)} to {formatted(most, 3)} times the true error on "
-        f"{len(found)} meshes: a band of {FACTOR:g} times the estimate {holds} the true value.",
+        f"On {len(found)} meshes the estimate is {formatted(least, 3)} to {formatted(most, 3)} "
+        f"times the true error: a band of {FACTOR:g} times the estimate {contains} the true value.",
         [
             page.value("smallest estimate over true error", least, at_least=1.0 / FACTOR),
             page.value("largest estimate over true error", most, at_most=FACTOR),
@@ -120,8 +120,8 @@ def answer(page: Page, found: Floats) -> None:
         ],
         hero=RATIOS,
         cautions=[
-            "The error of the shape is not in the estimate: too few elements round a turn are not "
-            "seen by it."
+            "The estimate does not see the error of the shape, as by too few elements round the "
+            "circumference."
         ],
     )
 

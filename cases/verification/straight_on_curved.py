@@ -32,10 +32,10 @@ SIZE = "element over circumference [-]"
 def answer(page: Page, sides: int, chords: float, arcs: float) -> None:
     """State the error of the torsional rigidity with straight and with curved elements."""
     page.answer(
-        "What do elements with straight sides cost on a curved surface?",
-        f"With {sides} elements round a shaft they miss {percent_text(chords)} of its torsional "
-        f"rigidity, curved elements {percent_text(arcs)}: {formatted(abs(chords / arcs), 2)} times "
-        "less with as many unknowns.",
+        "How much accuracy do elements with straight sides lose on a curved surface?",
+        f"With {sides} elements round a shaft, straight sides err by {percent_text(chords, 3)} in "
+        f"its torsional rigidity, curved sides by {percent_text(arcs)}, "
+        f"{formatted(abs(chords / arcs), 2)} times less.",
         [
             page.judged(
                 f"shaft, straight P2, {sides} sides: torsional rigidity less GJ, relative",

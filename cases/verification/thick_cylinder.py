@@ -47,8 +47,9 @@ def answer(page: Page, best: Record) -> None:
     stress = page.judged(f"{best_of}: {hoop}", "hoop stress at the bore, hexahedra", "Lame")
     page.answer(
         "How far does a thick cylinder open under internal pressure, and what does it carry?",
-        f"Its bore opens by {certain_value(opens)}, {percent_text(best[ERRORS[MOVED]])} from Lame, "
-        f"with a hoop stress of {certain_value(stress)}, to {percent_text(best[ERRORS[HOOP]])}.",
+        f"The bore opens by {certain_value(opens)} and carries a hoop stress of "
+        f"{certain_value(stress)}: {percent_text(best[ERRORS[MOVED]])} and "
+        f"{percent_text(best[ERRORS[HOOP]])} from Lame's solution.",
         [
             opens,
             stress,

@@ -155,9 +155,9 @@ def answer(page: Page, found: Found) -> None:
     coarse = max(found.coarse[q] for q in errors)
     ratio = max(max(r) / min(r) for r in found.ratios)
     page.answer(
-        "What does a tie between meshes that do not match cost in stiffness?",
-        f"Tied at mesh ratios up to {ratio:g} to 1, a cut bar is within "
-        f"{percent_text(max(errors.values()))} of the whole; its coarser mesh alone accounts for "
+        "Which error of the stiffness does a tie between meshes that do not match cause?",
+        f"A bar that is cut and tied, with mesh ratios up to {ratio:g}\u00a0:\u00a01, errs by at "
+        f"most {percent_text(max(errors.values()))}; its coarser mesh alone errs by "
         f"{percent_text(coarse)}.",
         [
             *(

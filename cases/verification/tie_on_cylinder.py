@@ -15,7 +15,7 @@ from fe_drivetrain.comparison import grid_convergence
 from fe_drivetrain.elasticity.interfaces import Constraint, dofs, held_dofs, mortar_tie, settled
 from fe_drivetrain.elasticity.mesh import Block
 from fe_drivetrain.report import trace
-from fe_drivetrain.report.number_text import formatted, percent_text
+from fe_drivetrain.report.number_text import percent_text
 from fe_drivetrain.report.suite import Page, Record, Run, column
 
 WIDTH = 1.0  # m
@@ -193,10 +193,9 @@ def run(run: Run, page: Page) -> None:
 def answer(page: Page, finest: str, worst: dict[str, float], order: float) -> None:
     """State the largest errors of tied rings; `finest` is the finest pair of about one size."""
     page.answer(
-        "What does a tie between rings of different meshes cost in stiffness?",
-        f"In torsion tied rings are within {percent_text(worst[TORSION])} of the closed form, "
-        f"radially within {percent_text(worst[RADIAL])} of shared nodes; uniform stress passes "
-        f"with order {formatted(order, 2)}.",
+        "Which error of the stiffness does a tie between rings of different meshes cause?",
+        f"Tied rings are within {percent_text(worst[TORSION])} of the closed form in torsion, and "
+        f"radially within {percent_text(worst[RADIAL])} of rings that share their nodes.",
         [
             page.judged(
                 f"torsion stiffness, {finest} elements round",
@@ -214,7 +213,7 @@ def answer(page: Page, finest: str, worst: dict[str, float], order: float) -> No
             page.value("largest error radially, all pairs [%]", 100 * worst[RADIAL]),
             page.judged(
                 "traction through the cylinder: order of its error",
-                "order of the stress that is passed",
+                "order of convergence of the stress passed on",
                 "interpolation",
             ),
         ],

@@ -5,11 +5,11 @@ import numpy as np
 from fe_drivetrain.cases import case
 from fe_drivetrain.cases.references import solid_shafts
 from fe_drivetrain.cases.references.shaft_theory import between_spheres, within_arcs
-from fe_drivetrain.cases.references.torsion_meridian import series_stiffness, torsion_bounds
+from fe_drivetrain.cases.references.torsion_meridian import Bounds, series_stiffness, torsion_bounds
 from fe_drivetrain.cases.verification.conical_shaft import HALF_ANGLE, INPUTS, RADII, SHAFT, STEEL
 from fe_drivetrain.cases.verification.shaft_inputs import begin, show_inputs
 from fe_drivetrain.cases.verification.torsion_bound import between, check_plane_sections
-from fe_drivetrain.report.number_text import certain_value, percent_text
+from fe_drivetrain.report.number_text import certain_value, percent_text, value_with_band
 from fe_drivetrain.report.suite import MeshSeries, Page, Record, Run, Target
 
 G = STEEL.shear_modulus
@@ -37,41 +37,51 @@ def too_stiff(degrees: float) -> Record:
     return {ANGLE: degrees} | {name: 100 * (simple / k - 1) for name, k in by.items()}
 
 
-def answer(page: Page, simple: str, excess: float, widest: Record) -> None:
-    """State how much too stiff the integral is [%].
+def answer(page: Page, simple: float, bounds: Bounds, widest: Record) -> float:
+    """State how much too stiff the integral is [%], and return it.
 
     Parameters
     ----------
     page : Page
         With the checks of the cone.
-    simple : str
-        Quantity of the check of the integral.
-    excess : float
-        How much too stiff the integral is [%].
+    simple : float
+        Stiffness by the integral [N m/rad].
+    bounds : Bounds
+        Of the exact stiffness [N m/rad].
     widest : dict
         The same of the widest cone of the sweep.
     """
-    exact = page.judged(
-        RIGID.partition(" [")[0], "stiffness between rigid flat ends", "two bounds", unit="MN m/rad"
+    middle, excess = bounds.middle / 1e6, 100 * (simple / bounds.middle - 1)
+    exact = page.value("exact stiffness [MN m/rad]", middle, bounds.half_width / 1e6)
+    solid = page.judged(
+        RIGID.partition(" [")[0], "stiffness of a solid mesh", "exact", unit="MN m/rad"
     )
-    by_integral = page.judged(
-        simple, "stiffness by the integral of dx / GJ", "two bounds", unit="MN m/rad"
+    digits, unit = certain_value(exact).split("\u00a0", 1)
+    by_integral = page.value(
+        "stiffness by the integral [MN m/rad]",
+        simple / 1e6,
+        beside=middle,
+        by="exact",
+        printed=digits,
     )
     angle = widest[ANGLE]
     page.answer(
         "How good is the integral of dx / GJ for a conical shaft between rigid ends?",
-        f"At a half angle of {HALF_ANGLE:g}° it is "
-        f"{percent_text(excess / 100, 3)} too stiff, with {certain_value(by_integral)} against "
-        f"{certain_value(exact)} of the solid; at {angle:g}° "
-        f"{percent_text(widest[FLAT] / 100, 3)}.",
+        f"At a half angle of {HALF_ANGLE:g}° the integral is {percent_text(excess / 100, 3)} too "
+        f"stiff ({value_with_band(by_integral).removesuffix(unit).strip()} instead of "
+        f"{certain_value(exact)}); at {angle:g}° it is {percent_text(widest[FLAT] / 100, 3)} too "
+        "stiff.",
         [
-            exact,
+            page.value(f"integral too stiff by, half angle of {HALF_ANGLE:g} degrees [%]", excess),
+            page.value(f"integral too stiff by, half angle of {angle:g} degrees [%]", widest[FLAT]),
             by_integral,
-            page.value(f"too stiff by, half angle of {HALF_ANGLE:g} degrees [%]", excess),
-            page.value(f"too stiff by, half angle of {angle:g} degrees [%]", widest[FLAT]),
+            exact,
+            solid,
         ],
         hero=TOO_STIFF,
+        cautions=["The exact stiffness is the middle between an upper and a lower bound."],
     )
+    return excess
 
 
 @case(
@@ -96,8 +106,7 @@ def run(run: Run, page: Page) -> None:
     within = float(np.tan(np.radians(HALF_ANGLE)) ** 2) * 5 / 3
     meridian = "between two bounds from the meridian"
     page.meets(simple, Target(title, bounds.middle, within, first, meridian))
-    excess = 100 * (simple / bounds.middle - 1)
-    answer(page, title.partition(" [")[0], excess, sweep[-1])
+    excess = answer(page, simple, bounds, sweep[-1])
     begin(run, page, "Cone", SHAFT, "The cone")
     show_inputs(page, *INPUTS, steel=STEEL)
     curves = {FLAT: FLAT, SPHERES: SPHERES}

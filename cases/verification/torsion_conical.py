@@ -41,12 +41,12 @@ def answer(page: Page, before: Record, best: Record) -> None:
     """State the torque of the cone, and how far the solid is from Michell."""
     torque = page.judged(TAKEN.partition(" [")[0], "torque of the cone", "Michell", unit="kN m")
     page.answer(
-        "Which torque twists a conical shaft, and does a solid find Michell's exact field?",
-        f"The solid cone takes {certain_value(torque)}, {percent_text(best[MISSED])} from "
-        f"Michell's torque, and its displacements lie within {percent_text(best[ERROR])} of his.",
+        "Which torque twists a conical shaft, and does a solid mesh find Michell's exact solution?",
+        f"The cone needs a torque of {certain_value(torque)}, {percent_text(best[MISSED])} from "
+        f"Michell's exact solution; its displacements err by at most {percent_text(best[ERROR])}.",
         [
             torque,
-            page.judged(ERROR, "largest error of the displacements", "Michell", unit="%"),
+            page.value("largest error of the displacements, finest mesh [%]", 100 * best[ERROR]),
             page.value("error of the torque on the coarser mesh [%]", 100 * before[MISSED]),
             page.value("elements round a turn", best[TURN]),
         ],

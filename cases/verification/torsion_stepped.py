@@ -67,11 +67,11 @@ def answer(page: Page, solid: Record, bored: Record) -> None:
     three = "torsional stiffness in three dimensions"
     page.answer(
         "What does a sharp step add to the torsional flexibility of a shaft?",
-        f"From {LARGE:g}\u00a0m to {SMALL:g}\u00a0m the sum of L / GJ is "
-        f"{percent_text(solid[TOO_STIFF] / 100, 3)} too stiff: the step twists like "
-        f"{formatted(solid[ADDED], 2)} diameters more of the thin part.",
+        f"A step from {LARGE:g}\u00a0m to {SMALL:g}\u00a0m twists like "
+        f"{formatted(solid[ADDED], 2)} diameters more of the thin shaft; without it, the sum of "
+        f"L\u00a0/\u00a0GJ is {percent_text(solid[TOO_STIFF] / 100, 3)} too stiff.",
         [
-            page.value("length that the step adds, over the small diameter", solid[ADDED]),
+            page.value("length of thin shaft that the step adds, over its diameter", solid[ADDED]),
             page.judged(f"solid: {three}", "stiffness, solid shaft", "bounds", unit="MN m/rad"),
             page.judged(f"bored: {three}", "stiffness, bored shaft", "bounds", unit="MN m/rad"),
             page.value("sum of L / GJ too stiff by, solid shaft [%]", solid[TOO_STIFF]),

@@ -67,9 +67,10 @@ def answer(page: Page, turn: int, largest: float) -> None:
     )
     order, stress = ORDER, STRESS.partition(" [")[0]
     page.answer(
-        "How many elements round a turn does the torsional stiffness of a shaft need?",
-        f"With {turn} elements round a turn it is {certain_value(solid)} solid and "
-        f"{certain_value(bored)} bored, at most {percent_text(largest)} from G J / L.",
+        "How many elements round the circumference does a shaft's torsional stiffness need?",
+        f"With {turn} elements the torsional stiffness is {certain_value(solid)} (solid shaft) and "
+        f"{certain_value(bored)} (bored), at most {percent_text(largest)} from "
+        "G\u00a0J\u00a0/\u00a0L.",
         [
             solid,
             bored,

@@ -61,10 +61,10 @@ def answer(page: Page) -> None:
     ]
     stress, shear = figures[:2]
     page.answer(
-        "Which stresses does a round bar under an eccentric end force carry at its root?",
-        f"The root carries a largest principal stress of {certain_value(stress)}, "
-        f"{difference_text(stress)} from VM12, and a largest shear stress of "
-        f"{certain_value(shear)}, {difference_text(shear)} from it.",
+        "Which stresses does the round bar of Ansys's VM12 carry at its root?",
+        f"The root's largest principal stress is {certain_value(stress)} and its largest shear "
+        f"stress {certain_value(shear)}: {difference_text(stress)} and {difference_text(shear)} "
+        "from VM12.",
         figures,
         hero=FROM_MANUAL,
     )

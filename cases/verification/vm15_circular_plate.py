@@ -75,10 +75,10 @@ def answer(page: Page) -> None:
         for support, at in (("clamped", "edge"), ("simply supported", "middle"))
     ]
     page.answer(
-        "How far does a circular plate sink under pressure, clamped and simply supported?",
-        f"Clamped it sinks by {certain_value(clamped)}, simply supported by "
-        f"{certain_value(simple)}: {difference_text(manual[0])} and "
-        f"{difference_text(manual[1])} from VM15, whose thin plate has no shear.",
+        "How far does the circular plate of Ansys's VM15 sink, clamped and simply supported?",
+        f"The plate sinks by {certain_value(clamped)} clamped and {certain_value(simple)} simply "
+        f"supported: {difference_text(manual[0])} and {difference_text(manual[1])} from VM15, "
+        "which neglects shear.",
         [clamped, simple, *manual, *stresses],
         hero=DIFFERENCES,
     )

@@ -59,15 +59,15 @@ def answer(page: Page, closed: str) -> None:
     manual = page.judged(DEFLECTION.partition(" [")[0], "deflection of the end", "VM18")
     figures = [
         manual,
-        page.judged(closed, "deflection of the end", "closed form"),
+        page.judged(closed, "deflection of the end, against theory", "closed form"),
         page.judged(BENDING.partition(" [")[0], by="VM18"),
         page.judged(TORSION.partition(" [")[0], "shear stress at the root", by="VM18"),
     ]
     page.answer(
-        "How far does a curved bar sink under a force out of its plane?",
-        f"Its end sinks by {certain_value(manual)}, {difference_text(manual)} from VM18, and "
-        f"its root carries {certain_value(figures[3])} in torsion, "
-        f"{difference_text(figures[3])} from it.",
+        "How far does the curved bar of Ansys's VM18 sink under a force out of its plane?",
+        f"The bar's end sinks by {certain_value(manual)} and its root's shear stress is "
+        f"{certain_value(figures[3])}: {difference_text(manual)} and "
+        f"{difference_text(figures[3])} from VM18.",
         figures,
         hero=DIFFERENCES,
     )

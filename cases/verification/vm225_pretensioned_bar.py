@@ -76,9 +76,9 @@ def answer(page: Page, closed: float, spread: float) -> None:
     closing = page.value("closing of the cut [µm]", 1e6 * closed, beside=target, by="VM225")
     same = "as" if all(check.passed for check in page.checks) else "not as"
     page.answer(
-        "How far does a cut close when the bar is tightened in it, and what does the bar carry?",
-        f"Under 125\u00a0lbf the cut closes by {certain_value(closing)} and the bar carries "
-        f"{certain_value(stress)}, both {same} VM225 prints.",
+        "How far does the cut in a bar close when the bar is tightened, and what does it carry?",
+        f"Tightened with 125\u00a0lbf, the cut closes by {certain_value(closing)} and the bar "
+        f"carries {certain_value(stress)}, both {same} VM225 prints.",
         [
             closing,
             stress,

@@ -32,13 +32,13 @@ def answer(page: Page, found: float, band: float, exact: float) -> None:
     same = "as" if all(check.passed for check in page.checks) else "not as"
     half = value_text(0.5 * exact, "MPa")
     page.answer(
-        "How hard do two cylinders press each other that are fitted with interference?",
-        f"By {certain_value(pressed)}, {same} VM292 prints, with 0.02\u00a0m on the radius; on the "
-        f"diameter, as the problem is quoted, it is not that but {half}.",
+        "How hard do the two cylinders of Ansys's VM292 press on each other?",
+        f"With 0.02\u00a0m of interference on the radius they press with {certain_value(pressed)}, "
+        f"{same} VM292 prints; on the diameter, as quoted, it is not that but {half}.",
         [
             pressed,
             page.judged("Lame's contact pressure", by="VM292", printed=PRINTED),
-            page.value("the same with 0.02 m on the diameter [MPa]", 0.5 * exact),
+            page.value("contact pressure with 0.02 m on the diameter [MPa]", 0.5 * exact),
         ],
         hero=PRESSURES,
         claim="holds in part",

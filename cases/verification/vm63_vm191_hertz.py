@@ -37,10 +37,10 @@ def answer(page: Page, half_width: float) -> None:
     )
     same = "as" if all(check.passed for check in page.checks) else "not as"
     page.answer(
-        "How large do Hertz contacts of a sphere and of two cylinders get?",
-        f"The sphere touches over a radius of {certain_value(sphere)}, the cylinders over a half "
-        f"width of {certain_value(width)} with {certain_value(pressure)}, {same} the manual "
-        "prints.",
+        "How large are the Hertz contacts of Ansys's VM63 (sphere) and VM191 (cylinders)?",
+        f"The sphere's contact has a radius of {certain_value(sphere)}, the cylinders' a half "
+        f"width of {certain_value(width)} and a pressure of {certain_value(pressure)}, {same} the "
+        "manual prints.",
         [sphere, closed, width, pressure],
         hero=BETWEEN,
     )

@@ -19,13 +19,14 @@ def rows(holding: int, count: int) -> list[Record]:
     [
         (39, False, "97.5\u00a0%: 95\u00a0% are asked for", "good"),
         (36, False, "90\u00a0%: not the 95\u00a0% that are asked for", "bad"),
-        (36, True, "90\u00a0%: too few to judge 95\u00a0% by", "none"),
+        (36, True, "90\u00a0%: too few to confirm 95\u00a0%", "none"),
     ],
 )
 def test_the_share_of_bands_that_hold_is_judged(
     holding: int, quick: bool, judged: str, status: str
 ) -> None:
     found = rows(holding, 40)
-    assert words_of_share(found, quick) == f"{holding} of 40 bands hold ({judged})"
+    said = f"{holding} of 40 uncertainty bands contain the true value ({judged})"
+    assert words_of_share(found, quick) == said
     figure = share_that_holds(Page(), found, quick)
     assert (figure.value, figure.status) == (pytest.approx(2.5 * holding), status)
