@@ -130,8 +130,7 @@ def answer(
     whole = value_text(published, "MN\u00a0m/rad")
     page.answer(
         "Does the main shaft fit the torsional stiffness published for the NREL 5 MW drivetrain?",
-        f"It can fit: the shaft alone has {certain_value(found)}, more than the drivetrain's "
-        f"{whole}."
+        f"It can fit: the shaft alone has {certain_value(found)}, not less than the {whole}."
         if fits
         else f"It does not fit: the shaft alone has {certain_value(found)}, "
         f"{published / found.value:.2f} times softer than the {whole} published for the whole "
@@ -158,8 +157,6 @@ def answer(
             ),
         ],
         hero=BY_PART,
-        cautions=[
-            "Compliances add in series: a whole drivetrain must be softer than its shaft alone."
-        ],
+        cautions=["Compliances add up: a whole drivetrain must be softer than its shaft alone."],
         claim="holds" if fits else "does not hold",
     )
