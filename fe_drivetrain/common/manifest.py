@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import re
+import stat
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -90,15 +92,30 @@ def manifest_of(folder: Path, kind: Kind) -> Manifest:
         With nothing in it but what the run wrote.
     kind : Kind
         What it is for.
+
+    Raises
+    ------
+    OSError
+        Some of it cannot be read: what is not listed would be taken for another program's.
     """
     files, folders = {}, set()
-    for path in sorted(folder.rglob("*")):
-        name = path.relative_to(folder).as_posix()
-        if is_plain_file(path) and name != MANIFEST:
+    for path in _below(folder):
+        name, mode = path.relative_to(folder).as_posix(), path.lstat().st_mode
+        if stat.S_ISREG(mode) and name != MANIFEST:
             files[name] = listed_file(path)
-        elif path.is_dir() and not path.is_symlink():
+        elif stat.S_ISDIR(mode):
             folders.add(name)
     return Manifest(kind, files, frozenset(folders))
+
+
+def _below(folder: Path) -> list[Path]:
+    """All that is below a folder; `Path.rglob` passes by what it cannot read, since Python 3.13."""
+
+    def refuse(error: OSError) -> None:
+        raise error
+
+    walk = os.walk(folder, onerror=refuse)
+    return sorted(Path(at, name) for at, inner, files in walk for name in (*inner, *files))
 
 
 def read_manifest(folder: Path) -> Manifest | None:
