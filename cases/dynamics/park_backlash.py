@@ -318,9 +318,9 @@ def answer(
     backlash = f"{1e3 * GAP:g}\u00a0mm of backlash"
     highest = max(float(one.row[LARGEST]) for one in with_gap.values() if one.bounded)
     page.answer(
-        "Does backlash bound the mesh forces of Park et al. in starts and stops?",
+        "Does backlash limit the mesh forces of the gearbox model of Park et al.?",
         (
-            f"No: in a {still[0]}, mesh forces exceed {UNBOUND:g} times static, "
+            f"No: in a {still[0]}, its mesh forces exceed {UNBOUND:g} times static, "
             + (
                 f"with {backlash} or without."
                 if still[0] in loose

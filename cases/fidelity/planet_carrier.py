@@ -146,7 +146,8 @@ def answer(
     solid = compared.chosen == len(compared.ladder.models) - 1
     beams = f"beams are {abs(off[0]):.2g}\u00a0% too {'stiff' if off[0] > 0.0 else 'soft'}"
     if compared.own > TOLERANCE:
-        which = f"but the solid model itself is uncertain by ±\u00a0{100 * compared.own:.2g}\u00a0%"
+        beams = "beams cannot be judged"
+        which = f"as the solid model is uncertain by ±\u00a0{100 * compared.own:.2g}\u00a0%"
     else:
         which = "which is not enough" if solid else "which is enough"
     page.answer(

@@ -244,8 +244,8 @@ def answer(page: Page, rows: list[Record]) -> None:
         f"Which flanks of the NREL 750 kW gearbox have the highest contact pressure at {at}?",
         f"The {most}; the thesis's ratios of pressures hold for equal forces."
         if fits
-        else f"The {most}; the thesis's ratio of sun to ring, {printed:.3g}, does not hold: Hertz "
-        f"gives {exact:.3g}.",
+        else f"The {most}; for equal forces sun over ring is {exact:.3g}, not {printed:.3g} as the "
+        "thesis prints.",
         [
             *(
                 page.judged(

@@ -115,10 +115,10 @@ def answer(page: Page, bonded: StudyResult, hero: str) -> None:
     enough = sprung.mean_error_percent <= 2.0
     K_R = {row["plane"]: float(row["averaged seat [MN m/rad]"]) for row in seat_rows(bonded)}
     page.answer(
-        "Is a beam with a torsional spring enough for a bonded main bearing?",
-        f"{'Yes, for this housing' if enough else 'No, it is not'}: a beam with its K_R as "
-        f"spring has a mean error of {sprung.mean_error_percent:.2g}\u00a0% (thesis "
-        f"{of_sprung[0]:g}\u00a0%), a pinned beam {pinned.mean_error_percent:.3g}\u00a0%.",
+        "Is a beam on a tilting spring (K_R) enough for a main bearing that takes moments?",
+        f"{'Yes, for this housing' if enough else 'No, it is not'}: a beam on a tilting "
+        f"spring errs by {sprung.mean_error_percent:.2g}\u00a0% on average in its reactions, a "
+        f"pinned beam by {pinned.mean_error_percent:.3g}\u00a0%.",
         [
             page.value(
                 "mean error, beam with the housing's K_R [%]",

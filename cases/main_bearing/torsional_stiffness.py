@@ -135,8 +135,9 @@ def answer_of_both(page: Page, found: dict[str, calibrated.Housed], tilt: SeatSt
         page.found(f"K_R, {plane} plane [MN m/rad]", generic.K_R[plane], generic.band(p))
     page.answer(
         "How stiff against tilting (K_R) are a main bearing and its housing?",
-        f"The generic housing's K_R is {vertical} vertically, {horizontal} horizontally, up to "
-        f"{times:.1f} times the thesis's; three ways to read it differ by {spread:.0f}\u00a0%.",
+        f"The library's housing resists tilting with {vertical} vertically, {horizontal} "
+        f"horizontally, up to {times:.1f} times the published; three ways of evaluation differ "
+        f"by {spread:.0f}\u00a0%.",
         [
             *(
                 page.value(
@@ -149,7 +150,7 @@ def answer_of_both(page: Page, found: dict[str, calibrated.Housed], tilt: SeatSt
                 for name, one in found.items()
                 for p, plane in enumerate(one.K_R)
             ),
-            page.value("spread of three ways to read K_R, generic housing [%]", spread),
+            page.value("spread of three methods of evaluation, library's housing [%]", spread),
         ],
         hero=HERO,
         cautions=[

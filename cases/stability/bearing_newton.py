@@ -69,8 +69,8 @@ def answer(
         else f"does not solve {formatted(lost)} of {formatted(cases)} random loads"
     )
     plain = (
-        f"without it, up to {worst:.0f}\u00a0% fail once the clearance exceeds "
-        f"{formatted(rounded([last_safe], 2)[0], unit='')} roller deflections."
+        "without it, the first fail once the clearance exceeds "
+        f"{formatted(rounded([last_safe], 2)[0], unit='')} times a roller's deflection."
         if last_safe is not None
         else "without it none fails either, 0\u00a0%."
     )

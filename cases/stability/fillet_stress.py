@@ -151,9 +151,10 @@ def thin_tubes(page: Page, bores: tuple[float, ...]) -> float:
 def answer(page: Page, slopes: dict[str, float], last: float, band: float) -> None:
     """State how stress grows, and where formulas end."""
     page.answer(
-        "How small may a fillet be, and how thin a shaft, for its stress to be known?",
-        f"Bending stress grows as 1/radius to the power {slopes['bending']:.3f}, without limit; "
-        f"formulas for solid shafts are within 5\u00a0% up to a bore of {last:.2g} diameters.",
+        "How does stress grow at a small fillet, and up to which bore do formulas apply?",
+        f"Halving a very small radius raises the bending stress by "
+        f"{100 * (2 ** slopes['bending'] - 1):.0f}\u00a0%; formulas for solid shafts are within "
+        f"5\u00a0% up to a bore of {last:.2g} diameters.",
         [
             page.value("exponent of 1/radius, tension", round(slopes["tension"], 3)),
             page.value("exponent of 1/radius, bending", round(slopes["bending"], 3)),

@@ -115,8 +115,8 @@ def answer(page: Page, of_disc: DiscSweep, best: float) -> None:
         figures.insert(0, page.value(name, plain_nu))
     page.answer(
         "How near to 1/2 may Poisson's ratio be in a finite-element model?",
-        f"Up to {nus[-1]:g} with averaged dilatation: a bonded disc's stiffness is then within "
-        f"{formatted(100 * largest(errors[AVERAGED]), 2)}\u00a0%; plain 10-node tetrahedra make it "
+        f"Up to {nus[-1]:g}, as of rubber, if elements average the change of volume: the error is "
+        f"{formatted(100 * largest(errors[AVERAGED]), 2)}\u00a0%; without, a disc is "
         f"{formatted(100 * errors[DEFAULT][-1], 2)}\u00a0% too stiff.",
         figures,
         hero=DISC_ERRORS,
@@ -124,8 +124,8 @@ def answer(page: Page, of_disc: DiscSweep, best: float) -> None:
             "The program averages the dilatation by itself from a ratio of "
             f"{incompressible.AVERAGED_FROM:g} on; a bent shaft then needs four elements across.",
             f"The disc was tried at ratios of {', '.join(f'{nu:g}' for nu in nus)} only.",
-            "Near 1/2 multigrid does not converge, with averaging neither: a direct solver takes "
-            "over.",
+            "Near 1/2 the multigrid solver does not converge, even with averaging: a direct solver "
+            "takes over.",
         ],
     )
 

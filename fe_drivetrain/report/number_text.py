@@ -264,8 +264,8 @@ def standing_words(figure: KeyFigure) -> str:
         return "holds" if figure.status == "good" else "does not hold"
     if figure.bound == "equals":
         return "agrees" if figure.status == "good" else "differs"
-    words = {"good": "within", "watch": "near", "bad": "beyond"}
-    return words[figure.status]
+    beyond = "below" if figure.bound == "at least" else "beyond"
+    return {"good": "within", "watch": "near", "bad": beyond}[figure.status]
 
 
 def standing_text(figure: KeyFigure) -> str:
