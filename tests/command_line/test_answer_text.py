@@ -269,6 +269,7 @@ def test_results_keep_the_answer_as_it_is(invoke: Invoke, tmp_path: Path) -> Non
     [
         ({"at_most": 12.5}, "near"),
         ({"at_least": 10.0}, "within"),
+        ({"at_least": 20.0}, "below"),
         ({"between": (1.0, 2.0)}, "beyond"),
         ({"beside": 12.0}, ""),
     ],
