@@ -86,7 +86,8 @@ def _made(hint: Any, node: Any, path: str) -> Any:
     if origin in (Union, UnionType):
         (hint,) = (one for one in within if one is not type(None))
         return None if node is None else _made(hint, node, path)
-    if origin is not None and issubclass(origin, Mapping):
+    # since numpy 2.5 that of an array is an alias, and no class
+    if isinstance(origin, type) and issubclass(origin, Mapping):
         branch = _branch(node, path)
         return {name: _made(within[1], part, f"{path}/{name}") for name, part in branch.items()}
     if origin is tuple and isinstance(node, dict):

@@ -89,7 +89,7 @@ class Cycle:
 
 before = gc.get_stats()[2]["collections"]
 cycle = weakref.ref(Cycle())
-lasting = [[k] for k in range(500_000)]
+lasting = [[k] for k in range(1_500_000)]
 print(gc.get_stats()[2]["collections"] - before, cycle() is None)
 last = Cycle()
 del last
