@@ -119,9 +119,9 @@ def answer(page: Page, rows: list[Record], condensed: float) -> None:
     short |= {FEW: "40 shapes, straight rollers", CHOSEN: "40 shapes, profiled rollers"}
     page.answer(
         "Which model of a bearing in a flexible housing is accurate, and how fast is it?",
-        "A race with 40 deformation shapes gives the peak roller load within "
-        f"{percent_text(worst[CHOSEN] / 100.0)} in {micro / 1e3:.2g}\u00a0ms; rigid rings with "
-        f"straight rollers err by up to {percent_text(worst[RIGID] / 100.0)}.",
+        "40 ring shapes and profiled rollers give the peak roller load within "
+        f"{percent_text(worst[CHOSEN] / 100.0)} in {micro / 1e3:.2g}\u00a0ms; rigid rings and "
+        f"straight rollers within {percent_text(worst[RIGID] / 100.0)}.",
         [
             page.value("time per load case, 40 shapes, profiled rollers [ms]", micro / 1e3),
             *(page.value(f"largest error, {short[n]} [%]", worst[n]) for n in reversed(worst)),

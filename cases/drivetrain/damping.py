@@ -116,12 +116,15 @@ def answer(page: Page, free: dict[str, Torsional], tabled: float, lss: Record) -
         for n in (2, 5, 11)
     }
     holds = abs(tabled / DAMPING_RATIO - 1) < MESH_RATIO
-    cause = ", because second moments of area were taken for inertias"
+    stated = (
+        "as the thesis says"
+        if holds
+        else f"not {asked:g}\u00a0% as the thesis says: second moments of area were taken for "
+        "inertias"
+    )
     page.answer(
         "How strongly do the tabled dampers damp the drivetrain's first torsional mode?",
-        f"The thesis's {asked:g}\u00a0% of critical damping "
-        f"{'holds' if holds else 'does not hold'}: its tabled shaft dampers give "
-        f"{value_text(100 * tabled, '%')}{'' if holds else cause}.",
+        f"The tabled dampers give {value_text(100 * tabled, '%')} of critical damping, {stated}.",
         [
             page.value(
                 "damping ratio of the first mode, dampers as tabled [%]",

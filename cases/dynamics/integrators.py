@@ -76,9 +76,9 @@ def answer(page: Page, slopes: list[float], lost: float) -> None:
         energy = energy.model_copy(update={"status": "watch"})
     page.answer(
         "Are the methods of time integration accurate, and what does a varying stiffness need?",
-        f"All methods are of order {min(slopes):.1f} {met} printed tables; a mesh stiffness that "
-        f"follows the angle creates {value_text(energy.value, '%')} spurious energy without its "
-        "reaction torque.",
+        f"All methods are of order {min(slopes):.1f} {met} printed tables; a mesh stiffness over "
+        f"the angle needs its reaction torque, or {value_text(energy.value, '%')} false energy "
+        "appears.",
         [
             *(
                 page.judged(f"{name}: error over the step, exponent", f"order, {name}", "theory")

@@ -116,9 +116,9 @@ def answer(page: Page, bonded: StudyResult, hero: str) -> None:
     K_R = {row["plane"]: float(row["averaged seat [MN m/rad]"]) for row in seat_rows(bonded)}
     page.answer(
         "Is a beam on a tilting spring (K_R) enough for a main bearing that takes moments?",
-        f"{'Yes, for this housing' if enough else 'No, it is not'}: a beam on a tilting "
-        f"spring errs by {sprung.mean_error_percent:.2g}\u00a0% on average in its reactions, a "
-        f"pinned beam by {pinned.mean_error_percent:.3g}\u00a0%.",
+        f"{'Yes, for this housing' if enough else 'No, it is not'}: with a tilting "
+        f"spring the beam's reactions err by {sprung.mean_error_percent:.2g}\u00a0% on average, "
+        f"pinned by {pinned.mean_error_percent:.3g}\u00a0%.",
         [
             page.value(
                 "mean error, beam with the housing's K_R [%]",

@@ -151,9 +151,8 @@ def answer(page: Page, killed: list[Record], half: list[bool], found: Any) -> No
     whole = sum(is_as_expected(fault) for fault in found["faults"])
     page.answer(
         "What is left on disk after a killed run, a full disk or a damaged cache?",
-        f"{spoilt or 'None'} of {len(killed)} killed runs left an incomplete result (written in "
-        f"place: {sum(half)} of {len(half)}), and {wrong or 'none'} of {tries} damaged mesh files "
-        "changed a number.",
+        f"{spoilt or 'None'} of {len(killed)} killed runs left an incomplete result, and "
+        f"{wrong or 'none'} of {tries} damaged mesh files changed a number.",
         [
             page.value(
                 f"killed runs that left an incomplete result, of {len(killed)}", spoilt, at_most=0.0

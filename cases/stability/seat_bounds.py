@@ -280,14 +280,14 @@ def answer(page: Page, found: Found, narrow: float | None) -> None:
     apart, band = 100.0 * (1.0 - averaged[-1]), 1e3 * PLAIN_WIDTH
     page.answer(
         "Is the tilt stiffness of a bearing seat between those of rigid and averaged couplings?",
-        "For a bonded seat, yes: the couplings "
+        "Yes, if it is bonded: both couplings are "
         + (
-            f"differ by under {100 * GAP:g}\u00a0% up to a {formatted(1e3 * narrow)}\u00a0mm "
-            "wide band, "
+            f"less than {100 * GAP:g}\u00a0% apart on a band up to {formatted(1e3 * narrow)}"
+            "\u00a0mm wide, "
             if narrow is not None
-            else f"always differ by over {100 * GAP:g}\u00a0%, "
+            else f"always over {100 * GAP:g}\u00a0% apart, "
         )
-        + f"and by {apart:.0f}\u00a0% on the whole bore.",
+        + f"and {apart:.0f}\u00a0% on the whole bore.",
         [
             page.judged(
                 REMEDIED.format("rigid", 1e3 * found.sizes[-1]), f"rigid coupling, {band:g} mm band"
