@@ -18,7 +18,8 @@ from fe_drivetrain.common.threads import CORES_VARIABLE
 
 SCENE = "main_bearing_spherical"
 COARSE = ("mesh.shaft=0.5", "mesh.bearing=0.2", "mesh.housing=0.3", "mesh.elements_per_turn=6")
-PROGRAM = [sys.executable, "-c", "from fe_drivetrain.command_line.entry import main; main()"]
+# -P: the package that is installed, not one in this folder
+PROGRAM = [sys.executable, "-P", "-c", "from fe_drivetrain.command_line.entry import main; main()"]
 
 PARTS = {"overview", "loads", "reactions", "life", "model", "check", "export"}
 

@@ -252,7 +252,7 @@ def test_an_unknown_quantity_is_refused_before_what_computes_it_is_loaded(tmp_pa
         "atexit.register(known)\n"
         f"main(['advise', 'two_bearings', '--quantity', 'frnt.Fz', '--out', {str(tmp_path)!r}])\n"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-P", "-c", program], capture_output=True, text=True)
     assert done.returncode == 2
     assert "'frnt.Fz' is unknown: did you mean 'front.Fz'" in done.stderr
     assert done.stdout == "set()\n"
