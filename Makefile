@@ -7,7 +7,7 @@ demo: ## run the main-bearing study and print where its report is
 
 # Bytecode is written even where the machine says not to: every process of the tests would compile all
 # sources again.
-test: ## run the whole test suite
+test: ## run the tests
 	@.ci/setup test
 	@PYTHONDONTWRITEBYTECODE= .venv/bin/python -m pytest -q -n auto
 

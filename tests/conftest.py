@@ -323,7 +323,7 @@ def quick_run(kept_folder: Path) -> QuickRun:
 
 @pytest.fixture(scope="session")
 def every_quick_run(quick_run: QuickRun) -> QuickRun:
-    """Results of all cases, from a run of them all; a test that asks for them runs no case."""
+    """Results of all cases, from a run of them all; only what that lacks is run."""
     if not quick_run.given:
         pytest.skip(f"{QUICK_VARIABLE} names no folder of results, as `make cases` does")
     return quick_run

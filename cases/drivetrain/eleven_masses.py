@@ -145,8 +145,9 @@ def answer(page: Page, found: Floats, other: Restored) -> None:
     ]
     page.answer(
         "Do torsional frequencies of the NREL 750 kW drivetrain agree with the thesis's Table 6.1?",
-        f"In part: the lowest ones do, {certain_value(first)} with the generator fixed and "
-        f"{certain_value(free)} with it free; {astray} of the table's {len(found)} do not.",
+        f"{'In part' if astray else 'Yes'}: the lowest ones do, {certain_value(first)} with the "
+        f"generator fixed and {certain_value(free)} with it free; {astray} of the "
+        f"table's {len(found)} do not.",
         [
             *figures,
             *(

@@ -20,6 +20,7 @@ from fe_drivetrain.turbine_loads.hub_loads import (
     loop_statistics,
     surrogate_grid,
 )
+from fe_drivetrain.turbine_loads.hub_loads.loops import SHARE
 
 FORCE, MOMENT = slice(1, 3), slice(4, 6)
 
@@ -82,21 +83,22 @@ def answer(page: Page, whole: dict[str, Record], rows: list[Record], everywhere:
     by_excursion = {(row["load"], row[LEAST]): float(row[share]) for row in rows}
     large = by_excursion["DTRB, moment", SHARES[-1]]
     by_each = not any(row[WITHOUT] for row in rows if row["load"] == "DTRB, moment")
+    small = f"threshold {100 * SHARE:g}\u00a0%"
     page.answer(
         "How often do loads on a main bearing run in loops?",
         f"{'At every wind speed' if everywhere else 'Not in every history'} the double-row "
-        f"bearing's moment runs in loops, {moment[share]:.0f}\u00a0% of the time at threshold "
-        f"10\u00a0%, {large:.0f}\u00a0% at {100 * SHARES[-1]:g}\u00a0%; the thesis defines none.",
+        f"bearing's moment runs in loops, {moment[share]:.0f}\u00a0% of the time at {small}, "
+        f"{large:.0f}\u00a0% at {100 * SHARES[-1]:g}\u00a0%; the thesis defines none.",
         [
             page.value(
-                "time in moment loops, double-row bearing, threshold 10 % [%]", float(moment[share])
+                f"time in moment loops, double-row bearing, {small} [%]", float(moment[share])
             ),
             page.value(f"the same, threshold {100 * SHARES[-1]:g} %, medium turbulence [%]", large),
-            page.value("moment loops for each blade passing, threshold 10 %", float(moment[rate])),
+            page.value(f"moment loops for each blade passing, {small}", float(moment[rate])),
             page.value(
-                "time in force loops, double-row bearing, threshold 10 % [%]", float(force[share])
+                f"time in force loops, double-row bearing, {small} [%]", float(force[share])
             ),
-            page.value("force loops for each blade passing, threshold 10 %", float(force[rate])),
+            page.value(f"force loops for each blade passing, {small}", float(force[rate])),
             page.value(
                 "time in force loops, spherical bearing, threshold 50 % [%]",
                 by_excursion["DSRB, force", 0.5],

@@ -248,21 +248,21 @@ def check(page: Page, rows: list[Record]) -> None:
 def answer(page: Page, rows: list[Record]) -> None:
     """State whether deflation saves time beside multigrid."""
     mine = [row for row in rows if row["preconditioner"] == MULTIGRID and arrived(row)]
-    alike = max((row for row in mine if row["ratio"] == 1.0), key=saved)
+    equal = max((row for row in mine if row["ratio"] == 1.0), key=saved)
     most = max(mine, key=saved)
     wins = sorted({row["ratio"] for row in mine if row["time with over without"] < 1.0})
     jacobi = [row for row in rows if row["preconditioner"] == JACOBI and row["ratio"] > 1.0]
     page.answer(
         "Is it worth removing rigid-body motions from the solver's iterations (deflation)?",
-        f"{'Yes' if 2 * saved(alike) > alike['iterations without'] else 'No'}: of equally stiff "
-        f"bodies it saves {saved(alike)} of {alike['iterations without']} solver iterations; of "
+        f"{'Yes' if 2 * saved(equal) > equal['iterations without'] else 'No'}: of equally stiff "
+        f"bodies it saves {saved(equal)} of {equal['iterations without']} solver iterations; of "
         f"bodies {most['ratio']:,.0f} times as stiff as others {saved(most)} of "
         f"{most['iterations without']}.",
         [
             page.value(
                 "iterations with deflation, equal stiffness",
-                alike["iterations with"],
-                beside=alike["iterations without"],
+                equal["iterations with"],
+                beside=equal["iterations without"],
                 by="without",
             ),
             page.value(

@@ -9,6 +9,7 @@ from fe_drivetrain.cases.verification.bands_over_errors import (
     BAND,
     COVERED,
     ERROR,
+    HISTOGRAM,
     HOLDS,
     LEFT,
     RATIO,
@@ -57,7 +58,6 @@ RESERVE = 1.8
 ORDER = 6
 #: Shafts without fillets that an independent program solves, too, hub and gearbox kept.
 INDEPENDENT, QUICK_INDEPENDENT = (2, 8, 1, 3, 13, 14), (2,)
-HISTOGRAM = "Histogram of bands over true errors: below 1 a band is too small"
 MERIDIAN, SOLID, ONE_FILLET = "2, meridian", "3, solid", "2, one fillet"
 
 Solve = Callable[[Scene], tuple[Condensed, StiffnessBands]]

@@ -10,6 +10,7 @@ from fe_drivetrain.cases.verification.bands_over_errors import (
     BAND,
     COVERED,
     ERROR,
+    HISTOGRAM,
     HOLDS,
     LEFT,
     RATIO,
@@ -47,7 +48,6 @@ FINER, APART = (0.75, 0.55, 0.45, 0.4), 1.15
 #: Order of the reference: that of energy at a crack, where it converges most slowly.
 ORDER = 1.0
 
-HISTOGRAM = "Histogram of bands over true errors: below 1 a band is too small"
 BOTH = "bands of both values, relative"
 STIFFNESS, REACTION, CHANGE = "stiffness at the hub", "reaction", "change to a like design"
 

@@ -20,6 +20,7 @@ BINS = [
 
 BAND, ERROR, RATIO = "band, relative", "error, relative", "band over error"
 LEFT, HOLDS = "left of the reference, relative", "holds"
+HISTOGRAM = "Histogram of bands over true errors: below 1 a band is too small"
 
 
 def coverage(rows: list[Record]) -> Record:
